@@ -1,0 +1,42 @@
+"""What the examples share: writing a window's picture to a file, and finding the scene data."""
+
+import os
+import pathlib
+import sys
+
+from vtkmodules.vtkIOImage import vtkPNGWriter
+from vtkmodules.vtkRenderingCore import vtkRenderWindow, vtkWindowToImageFilter
+
+
+def window_of(renderer, size=(800, 600)):
+    """An off-screen window that shows one renderer."""
+    window = vtkRenderWindow()
+    window.SetOffScreenRendering(1)
+    window.SetSize(*size)
+    window.AddRenderer(renderer)
+    return window
+
+
+def save(window, path):
+    """Renders the window and writes its picture as PNG."""
+    window.Render()
+    grab = vtkWindowToImageFilter()
+    grab.SetInput(window)
+    grab.ReadFrontBufferOff()
+    writer = vtkPNGWriter()
+    writer.SetFileName(str(path))
+    writer.SetInputConnection(grab.GetOutputPort())
+    writer.Write()
+    return path
+
+
+def output_path(default):
+    """The first argument of the script, else `default` in the current folder."""
+    return pathlib.Path(sys.argv[1] if len(sys.argv) > 1 else default)
+
+
+def scene_data(name):
+    """The path of a scene data file as str, or None when the data folder is not there."""
+    root = os.environ.get("HRT_DATA_ROOT")
+    path = pathlib.Path(root, name) if root else None
+    return str(path) if path and path.is_file() else None

@@ -1,0 +1,107 @@
+"""Deterministic shadows, mirrors and glass for VTK, switched on in two lines:
+
+    from vtkhybrid import vtkHybridRayTracingPass
+    renderer.SetPass(vtkHybridRayTracingPass())
+
+The package re-exports VTK's wrappers of the two classes a script needs, vtkHybridRayTracingPass and
+vtkHybridMaterial, and adds what a wrapper cannot give: the counters of a frame as a dict
+(`statistics`) and the per-pixel buffers as numpy arrays (`buffer`).
+"""
+
+import importlib as _importlib
+import importlib.util as _importlib_util
+import json as _json
+
+# VTK registers its OpenGL classes with its object factory when this module is imported; without it
+# vtkRenderWindow() would be an abstract window that draws nothing.
+import vtkmodules.vtkRenderingOpenGL2  # noqa: F401  (imported for its effect)
+
+# The same holds for interactor styles and text, which a script uses without naming their modules. A
+# VTK built without them is good enough for us.
+for _name in ("vtkmodules.vtkInteractionStyle", "vtkmodules.vtkRenderingFreeType"):
+    if _importlib_util.find_spec(_name) is not None:
+        _importlib.import_module(_name)
+del _name
+
+from ._version import __version__
+from .vtkHybridRenderingOpenGL2 import vtkHybridRayTracingPass
+from .vtkHybridRenderingScene import vtkHybridMaterial
+
+__all__ = [
+    "__version__",
+    "buffer",
+    "set_buffers",
+    "statistics",
+    "vtkHybridMaterial",
+    "vtkHybridRayTracingPass",
+]
+
+
+def statistics(rt):
+    """The counters of the last frame of `rt` as a dict: stages with the reason why each ran or did
+    not, rays by class, triangles drawn, bytes read back, milliseconds."""
+    return _json.loads(rt.GetStatistics())
+
+
+def _check_name(rt, name):
+    """The pass knows its buffers; here its list is only made into the exception a script expects."""
+    if not isinstance(name, str):
+        raise TypeError(f"a buffer's name is a str, not {type(name).__name__}")
+    known = rt.GetKnownBuffers()
+    # A known name such as "array:NAME" stands for a family.
+    families = [other.split(":")[0] + ":" for other in known if ":" in other]
+    if name not in known and not any(name.startswith(f) and name != f for f in families):
+        names = ", ".join(repr(other) for other in known)
+        raise ValueError(f"there is no buffer {name!r}; the buffers are {names}")
+    return name
+
+
+def set_buffers(rt, names):
+    """Asks for per-pixel buffers from the next frame on, like rt.SetBuffers(names), but raises
+    ValueError for a name that does not exist. An empty list switches all of them off."""
+    if isinstance(names, str):
+        # A str is a sequence too, of letters; the wrapper would take it for a list of names.
+        names = [names]
+    rt.SetBuffers([_check_name(rt, name) for name in names])
+
+
+def _get_buffer(rt, name):
+    """rt.GetBuffer(name), with what the pass reports in place of an image raised, not printed."""
+    reports = []
+
+    def note(_caller, _event, text):
+        reports.append(text.strip())
+
+    note.CallDataType = "string0"
+    tag = rt.AddObserver("ErrorEvent", note)
+    try:
+        image = rt.GetBuffer(name)
+    finally:
+        rt.RemoveObserver(tag)
+    array = None if image is None else image.GetPointData().GetArray(name)
+    if array is None or array.GetNumberOfTuples() == 0:
+        reason = reports[-1] if reports else "the pass holds no such array"
+        raise RuntimeError(f"buffer {name!r} is empty, render a frame first ({reason})")
+    return image, array
+
+
+def buffer(rt, name):
+    """The buffer `name` of the last frame as a numpy array of shape (height, width) or (height,
+    width, components). Row 0 is the bottom one, as everywhere in VTK. Ids are int64 with -1 where
+    nothing was hit; floats are NaN there.
+
+    The array is a view of VTK's memory, nothing is copied: take a copy() to keep it longer than the
+    next frame. ValueError: there is no such buffer. RuntimeError: it was not asked for, or not
+    rendered yet."""
+    from vtkmodules.util.numpy_support import vtk_to_numpy  # numpy is needed here only
+
+    _check_name(rt, name)
+    if name not in rt.GetBuffers():
+        raise RuntimeError(
+            f"buffer {name!r} was not asked for: call rt.SetBuffers([{name!r}]), then render"
+        )
+    image, array = _get_buffer(rt, name)
+    width, height, _ = image.GetDimensions()
+    components = array.GetNumberOfComponents()
+    shape = (height, width) if components == 1 else (height, width, components)
+    return vtk_to_numpy(array).reshape(shape)

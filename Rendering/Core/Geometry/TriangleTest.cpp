@@ -1,0 +1,141 @@
+// Implements the exact kernel. Compiled with -ffp-contract=off, as the proof in the header demands.
+#include "Rendering/Core/Geometry/TriangleTest.h"
+
+#include <cmath>
+#include <limits>
+
+namespace hrt
+{
+
+namespace
+{
+
+int longestAxis(const glm::dvec3& v)
+{
+  const glm::dvec3 a = glm::abs(v);
+  if (a.x >= a.y && a.x >= a.z)
+  {
+    return 0;
+  }
+  return a.y >= a.z ? 1 : 2;
+}
+
+bool isFinite(const glm::dvec3& v)
+{
+  return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
+}
+
+glm::dvec3 transformPoint(const glm::dmat4& m, const glm::vec3& p)
+{
+  const double x = p.x, y = p.y, z = p.z;
+  return { m[0][0] * x + m[1][0] * y + m[2][0] * z + m[3][0],
+    m[0][1] * x + m[1][1] * y + m[2][1] * z + m[3][1],
+    m[0][2] * x + m[1][2] * y + m[2][2] * z + m[3][2] };
+}
+
+} // namespace
+
+glm::dmat4 positionsToScene(const Part& part, const glm::dvec3& sceneOrigin)
+{
+  glm::dmat4 m = part.positionsToWorld();
+  m[3] -= glm::dvec4(sceneOrigin, 0.0);
+  return m;
+}
+
+Corners sceneCorners(
+  const Geometry& geometry, const glm::dmat4& positionsToScene, std::size_t triangle)
+{
+  const glm::vec3* corner = geometry.positions.data() + 3 * triangle;
+  return { transformPoint(positionsToScene, corner[0]), transformPoint(positionsToScene, corner[1]),
+    transformPoint(positionsToScene, corner[2]) };
+}
+
+// Twice the signed areas that the ray's foot spans with each edge, and the corners' depths.
+struct ShearedRay::EdgeFunctions
+{
+  double a, b, c;          // opposite the corner of the same name
+  double depthA, depthB, depthC;
+
+  // Some of them zero counts for both sides.
+  bool inside() const
+  {
+    return (a >= 0.0 && b >= 0.0 && c >= 0.0) || (a <= 0.0 && b <= 0.0 && c <= 0.0);
+  }
+
+  // The hit point as weighted mean of the corners; false when the triangle is seen edge-on.
+  bool solve(double scaleZ, TriangleHit& hit) const
+  {
+    const double determinant = a + b + c;
+    hit.t = scaleZ * (a * depthA + b * depthB + c * depthC) / determinant;
+    hit.u = b / determinant;
+    hit.v = c / determinant;
+    return std::isfinite(hit.t) && std::isfinite(hit.u) && std::isfinite(hit.v);
+  }
+};
+
+ShearedRay::ShearedRay(const glm::dvec3& origin, const glm::dvec3& direction)
+  : Origin(origin)
+{
+  if (!isFinite(origin) || !isFinite(direction))
+  {
+    return;
+  }
+  // The winding swap of the paper's listing is left out: both sides count.
+  this->Kz = longestAxis(direction);
+  this->Kx = (this->Kz + 1) % 3;
+  this->Ky = (this->Kz + 2) % 3;
+  const double along = direction[this->Kz];
+  if (std::abs(along) < std::numeric_limits<double>::min())
+  {
+    return;
+  }
+  this->ShearX = direction[this->Kx] / along;
+  this->ShearY = direction[this->Ky] / along;
+  this->ScaleZ = 1.0 / along;
+  this->Valid = true;
+}
+
+ShearedRay::EdgeFunctions ShearedRay::edgeFunctions(const Corners& corners) const
+{
+  const glm::dvec3 a = corners.a - this->Origin;
+  const glm::dvec3 b = corners.b - this->Origin;
+  const glm::dvec3 c = corners.c - this->Origin;
+  const double ax = a[this->Kx] - this->ShearX * a[this->Kz];
+  const double ay = a[this->Ky] - this->ShearY * a[this->Kz];
+  const double bx = b[this->Kx] - this->ShearX * b[this->Kz];
+  const double by = b[this->Ky] - this->ShearY * b[this->Kz];
+  const double cx = c[this->Kx] - this->ShearX * c[this->Kz];
+  const double cy = c[this->Ky] - this->ShearY * c[this->Kz];
+  return { cx * by - cy * bx, ax * cy - ay * cx, bx * ay - by * ax, a[this->Kz], b[this->Kz],
+    c[this->Kz] };
+}
+
+bool ShearedRay::hitsTriangle(const Corners& corners, double tMaximum, TriangleHit& hit) const
+{
+  if (!this->Valid)
+  {
+    return false;
+  }
+  const EdgeFunctions edges = this->edgeFunctions(corners);
+  // `solve` refuses three zeros: their sum is zero too.
+  return edges.inside() && edges.solve(this->ScaleZ, hit) && hit.t > 0.0 && hit.t < tMaximum;
+}
+
+bool ShearedRay::hitsPlane(const Corners& corners, TriangleHit& hit) const
+{
+  return this->Valid && this->edgeFunctions(corners).solve(this->ScaleZ, hit);
+}
+
+bool triangleHit(const glm::dvec3& origin, const glm::dvec3& direction, const Corners& corners,
+  double tMaximum, TriangleHit& hit)
+{
+  return ShearedRay(origin, direction).hitsTriangle(corners, tMaximum, hit);
+}
+
+bool planeHit(const glm::dvec3& origin, const glm::dvec3& direction, const Corners& corners,
+  TriangleHit& hit)
+{
+  return ShearedRay(origin, direction).hitsPlane(corners, hit);
+}
+
+} // namespace hrt

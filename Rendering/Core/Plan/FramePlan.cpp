@@ -1,0 +1,384 @@
+// The rules of the frame plan, one function a stage, in the order in which the stages run. What a
+// stage depends on is written once, in Inputs, and used both to plan a frame and to tell what is
+// still valid after it.
+#include "Rendering/Core/Plan/FramePlan.h"
+
+#include <algorithm>
+
+namespace hrt
+{
+
+namespace
+{
+
+StageDecision run(const char* reason)
+{
+  return { true, reason };
+}
+
+StageDecision skip(const char* reason)
+{
+  return { false, reason };
+}
+
+// Why a result is out of date; null when it is not.
+using Cause = const char*;
+
+bool anyLightMoved(const Changes& changes)
+{
+  return std::any_of(
+    changes.lightMoved.begin(), changes.lightMoved.end(), [](bool moved) { return moved; });
+}
+
+// What each stage's result depends on.
+class Inputs
+{
+public:
+  Inputs(const Changes& changes, const SettingsChanges& settings)
+    : C(changes)
+    , Settings(settings)
+  {
+  }
+
+  Cause triangles() const
+  {
+    return this->C.first ? "first frame" : this->C.geometry ? "geometry changed" : nullptr;
+  }
+
+  Cause placedTriangles() const
+  {
+    const Cause cause = this->triangles();
+    return cause ? cause : this->C.transforms ? "an actor moved" : nullptr;
+  }
+
+  Cause shadowMap(std::size_t light) const
+  {
+    if (const Cause cause = this->placedTriangles())
+    {
+      return cause;
+    }
+    if (this->C.lightCount)
+    {
+      return "the set of lights changed";
+    }
+    return this->C.lightMoved.at(light) ? "the light moved" : nullptr;
+  }
+
+  Cause visibility() const
+  {
+    if (const Cause cause = this->placedTriangles())
+    {
+      return cause;
+    }
+    return this->C.camera ? "the camera changed"
+      : this->C.culling   ? "face culling changed"
+      : this->Settings.visibility ? "the visibility setting changed"
+                                  : nullptr;
+  }
+
+  // What shading depends on beside the visible triangles.
+  Cause shading() const
+  {
+    return this->C.materials      ? "a material changed"
+      : this->C.lightCount        ? "the set of lights changed"
+      : anyLightMoved(this->C)    ? "a light moved"
+      : this->C.lightColors       ? "a light's colour changed"
+      : this->Settings.shading    ? "the shadow settings changed"
+                                  : nullptr;
+  }
+
+  Cause primaryImage() const
+  {
+    const Cause cause = this->visibility();
+    return cause ? cause : this->shading();
+  }
+
+  Cause secondaryImage() const
+  {
+    const Cause cause = this->primaryImage();
+    return cause            ? cause
+      : this->C.background ? "the background changed"
+      : this->Settings.secondary ? "the reflection or refraction settings changed"
+                                 : nullptr;
+  }
+
+private:
+  const Changes& C;
+  const SettingsChanges& Settings;
+};
+
+StageDecision decide(Cause outdated, bool cached, const char* missing, const char* upToDate)
+{
+  return outdated ? run(outdated) : cached ? skip(upToDate) : run(missing);
+}
+
+StageDecision planUpload(const Facts& facts, const Inputs& inputs, const Caches& caches)
+{
+  if (!facts.anyPartInView)
+  {
+    return skip("nothing is in view");
+  }
+  return decide(inputs.triangles(), caches.geometryUploaded, "the GPU does not hold the geometry",
+    "the GPU holds the geometry");
+}
+
+StageDecision planShadowMap(std::size_t light, const Facts& facts, const Settings& settings,
+  const Inputs& inputs, const Caches& caches)
+{
+  if (settings.shadows != ShadowMode::ShadowMaps)
+  {
+    return skip("shadows are off");
+  }
+  if (!facts.anyPartInView)
+  {
+    return skip("nothing is in view");
+  }
+  if (!facts.anyCaster)
+  {
+    return skip("nothing casts shadows");
+  }
+  if (!facts.lightCanCast.at(light))
+  {
+    return skip("the light is at the eye and its shadows are hidden");
+  }
+  const bool cached = light < caches.shadowMaps.size() && caches.shadowMaps[light];
+  return decide(inputs.shadowMap(light), cached, "the light has no map yet",
+    "neither the light nor a caster moved");
+}
+
+// The stage of all maps runs when one map does.
+StageDecision summarizeShadowMaps(const std::vector<StageDecision>& maps)
+{
+  for (const StageDecision& map : maps)
+  {
+    if (map.run)
+    {
+      return map;
+    }
+  }
+  return maps.empty() ? skip("the scene has no lights") : maps.front();
+}
+
+StageDecision planVisibility(const Facts& facts, const Inputs& inputs, const Caches& caches)
+{
+  if (!facts.anyPartInView)
+  {
+    return skip("nothing is in view");
+  }
+  return decide(inputs.visibility(), caches.visibility, "no object intersection buffer yet",
+    "nothing changed what is visible");
+}
+
+StageDecision planPrimaryShading(
+  const Facts& facts, const FramePlan& plan, const Inputs& inputs, const Caches& caches)
+{
+  if (!facts.anyPartInView)
+  {
+    return skip("nothing is in view");
+  }
+  if (plan[Stage::Visibility].run)
+  {
+    return run("visibility is new");
+  }
+  if (plan[Stage::ShadowMaps].run)
+  {
+    return run("a shadow map is new");
+  }
+  return decide(inputs.primaryImage(), caches.primaryImage, "no primary image yet",
+    "the primary image is valid");
+}
+
+// Whether the settings let secondary rays run for what is in view; else why not.
+StageDecision needsSecondaryRays(const Facts& facts, const Settings& settings)
+{
+  if (!facts.mirrorInView && !facts.glassInView)
+  {
+    return skip("no mirror or glass is in view");
+  }
+  if (settings.maximumDepth <= 0)
+  {
+    return skip("the maximum depth is 0");
+  }
+  if (facts.mirrorInView && settings.reflections)
+  {
+    return run("a mirror is in view");
+  }
+  if (facts.glassInView && settings.refractions)
+  {
+    return run("glass is in view");
+  }
+  return skip("reflections or refractions are off");
+}
+
+void planSecondary(const StageDecision& needed, const Inputs& inputs, const Caches& caches,
+  FramePlan& plan)
+{
+  plan.useSecondaryImage = needed.run;
+  if (!needed.run)
+  {
+    plan[Stage::ReadBack] = plan[Stage::Structure] = plan[Stage::SecondaryRays] = needed;
+    return;
+  }
+  // New visibility always renews the rays: the pixels of mirrors and glass are others.
+  const StageDecision& visibility = plan[Stage::Visibility];
+  plan[Stage::SecondaryRays] = decide(
+    visibility.run ? visibility.reason : inputs.secondaryImage(), caches.secondaryImage,
+    "no secondary image yet", "the secondary image is valid");
+  if (!plan[Stage::SecondaryRays].run)
+  {
+    plan[Stage::ReadBack] = plan[Stage::Structure] = plan[Stage::SecondaryRays];
+    return;
+  }
+  plan[Stage::ReadBack] = run("secondary rays start at the visible triangles");
+  plan[Stage::Structure] = decide(inputs.placedTriangles(), caches.structure,
+    "no ray structure yet", "the ray structure is valid");
+}
+
+StageDecision planBlit(const Facts& facts, const FramePlan& plan)
+{
+  if (!facts.anyPartInView)
+  {
+    return skip("nothing is in view"); // what is cached shows another view
+  }
+  const bool anyStage = std::any_of(plan.stages.begin(), plan.stages.end(),
+    [](const StageDecision& stage) { return stage.run; });
+  return run(anyStage ? "the image is new" : "nothing changed since the last frame");
+}
+
+// -- gathering facts -----------------------------------------------------------------------------
+
+// Whether a box is not wholly outside one clip plane. Never false for a box that is seen; a box
+// near a corner of the frustum may be counted as seen, which costs time but no pixel.
+bool boxInFrustum(const glm::dmat4& toClip, const glm::dvec3& lower, const glm::dvec3& upper)
+{
+  bool beyondLower[3] = { true, true, true };
+  bool beyondUpper[3] = { true, true, true };
+  for (int corner = 0; corner < 8; ++corner)
+  {
+    const glm::dvec4 clip = toClip *
+      glm::dvec4((corner & 1) ? upper.x : lower.x, (corner & 2) ? upper.y : lower.y,
+        (corner & 4) ? upper.z : lower.z, 1.0);
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      beyondLower[axis] = beyondLower[axis] && clip[axis] < -clip.w;
+      beyondUpper[axis] = beyondUpper[axis] && clip[axis] > clip.w;
+    }
+  }
+  const auto outside = [](const bool* beyond) { return beyond[0] || beyond[1] || beyond[2]; };
+  return !outside(beyondLower) && !outside(beyondUpper);
+}
+
+bool inView(const Part& part, const glm::dmat4& worldToClip)
+{
+  glm::dvec3 lower, upper;
+  worldBounds(part, lower, upper);
+  return part.visibleToCamera && part.geometry->triangleCount() > 0 &&
+    boxInFrustum(worldToClip, lower, upper);
+}
+
+} // namespace
+
+const char* stageName(Stage stage)
+{
+  switch (stage)
+  {
+    case Stage::GeometryUpload:
+      return "geometry_upload";
+    case Stage::ShadowMaps:
+      return "shadow_maps";
+    case Stage::Visibility:
+      return "visibility";
+    case Stage::PrimaryShading:
+      return "primary_shading";
+    case Stage::ReadBack:
+      return "read_back";
+    case Stage::Structure:
+      return "structure";
+    case Stage::SecondaryRays:
+      return "secondary_rays";
+    case Stage::Blit:
+      return "blit";
+    case Stage::Count:
+      break;
+  }
+  return "";
+}
+
+SettingsChanges compareSettings(const Settings& before, const Settings& now)
+{
+  SettingsChanges changes;
+  changes.visibility = before.visibility != now.visibility;
+  changes.shading = before.shadows != now.shadows ||
+    (now.shadows == ShadowMode::ShadowMaps &&
+      before.shadowMapResolution != now.shadowMapResolution);
+  changes.secondary = before.reflections != now.reflections ||
+    before.refractions != now.refractions || before.maximumDepth != now.maximumDepth;
+  return changes;
+}
+
+FramePlan planFrame(const Facts& facts, const Settings& settings,
+  const SettingsChanges& settingsChanges, const Changes& changes, const Caches& caches)
+{
+  const Inputs inputs(changes, settingsChanges);
+  FramePlan plan;
+  plan[Stage::GeometryUpload] = planUpload(facts, inputs, caches);
+  for (std::size_t light = 0; light < facts.lightCanCast.size(); ++light)
+  {
+    plan.shadowMaps.push_back(planShadowMap(light, facts, settings, inputs, caches));
+  }
+  plan[Stage::ShadowMaps] = summarizeShadowMaps(plan.shadowMaps);
+  plan[Stage::Visibility] = planVisibility(facts, inputs, caches);
+  plan[Stage::PrimaryShading] = planPrimaryShading(facts, plan, inputs, caches);
+  planSecondary(needsSecondaryRays(facts, settings), inputs, caches, plan);
+  plan[Stage::Blit] = planBlit(facts, plan);
+  return plan;
+}
+
+Caches cachesAfter(const FramePlan& plan, const SettingsChanges& settingsChanges,
+  const Changes& changes, const Caches& before)
+{
+  const Inputs inputs(changes, settingsChanges);
+  const auto valid = [&plan](Stage stage, Cause outdated, bool cached) {
+    return plan[stage].run || (cached && !outdated);
+  };
+  Caches after;
+  after.geometryUploaded =
+    valid(Stage::GeometryUpload, inputs.triangles(), before.geometryUploaded);
+  after.visibility = valid(Stage::Visibility, inputs.visibility(), before.visibility);
+  after.primaryImage = valid(Stage::PrimaryShading, inputs.primaryImage(), before.primaryImage);
+  after.secondaryImage =
+    valid(Stage::SecondaryRays, inputs.secondaryImage(), before.secondaryImage);
+  after.structure = valid(Stage::Structure, inputs.placedTriangles(), before.structure);
+  for (std::size_t light = 0; light < plan.shadowMaps.size(); ++light)
+  {
+    const bool cached = light < before.shadowMaps.size() && before.shadowMaps[light];
+    after.shadowMaps.push_back(
+      plan.shadowMaps[light].run || (cached && !inputs.shadowMap(light)));
+  }
+  return after;
+}
+
+Facts gatherFacts(const Snapshot& snapshot)
+{
+  Facts facts;
+  facts.triangles = snapshot.triangleCount;
+  const glm::dmat4 worldToClip = snapshot.camera.viewToClip * snapshot.camera.worldToView;
+  for (const Part& part : snapshot.parts)
+  {
+    const bool seen = inView(part, worldToClip);
+    facts.anyPartInView = facts.anyPartInView || seen;
+    facts.mirrorInView = facts.mirrorInView || (seen && part.material.isMirror());
+    facts.glassInView = facts.glassInView || (seen && part.material.isGlass());
+    facts.anyCaster =
+      facts.anyCaster || (part.castsShadow && part.geometry->triangleCount() > 0);
+  }
+  for (const Light& light : snapshot.lights)
+  {
+    // From the eye itself no shadow is seen: whatever hides a point from the light hides it from
+    // the camera too.
+    facts.lightCanCast.push_back(!(light.isHeadlight && light.kind == Light::Kind::Positional));
+  }
+  return facts;
+}
+
+} // namespace hrt

@@ -1,0 +1,106 @@
+// The frame plan decides, before any work is done, which stages of a frame run and records why each
+// other stage is skipped. It is a pure function of plain values, tested by table; nothing else in
+// the code decides to skip anything.
+#pragma once
+
+#include "Rendering/Core/Snapshot.h"
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace hrt
+{
+
+enum class Visibility : std::uint8_t { ItemBuffer, DirectRendering };
+enum class ShadowMode : std::uint8_t { Off, ShadowMaps };
+
+// What the user asked for; read from the pass.
+struct Settings
+{
+  Visibility visibility = Visibility::ItemBuffer;
+  ShadowMode shadows = ShadowMode::ShadowMaps;
+  bool reflections = true;
+  bool refractions = true;
+  int maximumDepth = 3;          // bounces of a secondary ray
+  int shadowMapResolution = 2048;// texels along a side of one map face
+};
+
+// Which results a change of the settings outdates.
+struct SettingsChanges
+{
+  bool visibility = false; // how the first hits are found
+  bool shading = false;    // shadows
+  bool secondary = false;  // reflections, refractions, depth
+};
+SettingsChanges compareSettings(const Settings& before, const Settings& now);
+
+// What the scene holds, as far as the plan needs to know.
+struct Facts
+{
+  std::uint64_t triangles = 0;        // in the snapshot
+  bool anyPartInView = false;         // some part that the camera sees meets the view frustum
+  bool mirrorInView = false;          // same, for a part with reflectance
+  bool glassInView = false;           // same, for a part of glass
+  bool anyCaster = false;
+  std::vector<bool> lightCanCast;     // per light: false e.g. for a headlight placed at the eye
+};
+
+// What is still valid from earlier frames on this GL context.
+struct Caches
+{
+  bool geometryUploaded = false;      // the GPU holds this snapshot's geometry
+  bool visibility = false;            // the object intersection buffer exists with this size
+  bool primaryImage = false;          // the shaded primary image exists
+  bool secondaryImage = false;        // the secondary rays' image exists
+  bool structure = false;             // a ray structure exists
+  std::vector<bool> shadowMaps;       // per light: its map exists at the wanted resolution
+};
+
+enum class Stage : std::uint8_t
+{
+  GeometryUpload,  // triangles to vertex and texture buffers
+  ShadowMaps,      // depth maps as seen from the lights
+  Visibility,      // the object intersection buffer
+  PrimaryShading,  // GPU ray caster
+  ReadBack,        // ids of the pixels to host memory
+  Structure,       // acceleration structure for rays
+  SecondaryRays,   // reflection, refraction and their shadow rays
+  Blit,            // result into the window's framebuffer
+  Count
+};
+inline constexpr std::size_t kStageCount = static_cast<std::size_t>(Stage::Count);
+
+// The name scripts read in the statistics: snake case.
+const char* stageName(Stage stage);
+
+struct StageDecision
+{
+  bool run = false;
+  const char* reason = ""; // why it runs or why it is skipped; a short English phrase
+};
+
+struct FramePlan
+{
+  std::array<StageDecision, kStageCount> stages;
+  std::vector<StageDecision> shadowMaps; // per light of the snapshot
+  bool useSecondaryImage = false;        // composite the secondary image over the primary one
+
+  const StageDecision& operator[](Stage s) const { return stages[static_cast<std::size_t>(s)]; }
+  StageDecision& operator[](Stage s) { return stages[static_cast<std::size_t>(s)]; }
+};
+
+FramePlan planFrame(const Facts& facts, const Settings& settings,
+  const SettingsChanges& settingsChanges, const Changes& changes, const Caches& caches);
+
+// Gathers the facts of a snapshot; `lightCanCast` included.
+Facts gatherFacts(const Snapshot& snapshot);
+
+// What is valid after a frame that ran the plan: results of stages that ran are; results of stages
+// that were skipped although what they depend on changed are no longer. Without this a structure
+// that no mirror needed while a part moved would look up to date when the mirror comes into view.
+Caches cachesAfter(const FramePlan& plan, const SettingsChanges& settingsChanges,
+  const Changes& changes, const Caches& before);
+
+} // namespace hrt

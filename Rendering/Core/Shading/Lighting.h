@@ -1,0 +1,34 @@
+// From a snapshot's light to the one the shared shading source takes, in any rigid frame: the GPU
+// asks for view coordinates, the tracer for world coordinates relative to the scene's origin.
+#pragma once
+
+#include "Rendering/Core/Shading/Shading.h"
+#include "Rendering/Core/Snapshot.h"
+
+#include <glm/gtc/constants.hpp>
+
+namespace hrt
+{
+
+// Cosine that no direction reaches: the light has no cone (see hrtAttenuation).
+inline constexpr float kNoCone = -2.0f;
+
+// `frame` maps world coordinates to those in which the surface will be shaded.
+inline shading::HrtLight shadingLight(
+  const Light& light, bool singleHeadlight, const glm::dmat4& frame)
+{
+  shading::HrtLight l;
+  l.position = glm::vec3(frame * glm::dvec4(light.position, 1.0));
+  l.direction = glm::vec3(glm::normalize(glm::dmat3(frame) * light.direction));
+  l.color = light.color;
+  l.attenuation = light.attenuation;
+  l.cosCone =
+    light.isSpot() ? static_cast<float>(glm::cos(glm::radians(double(light.coneAngle)))) : kNoCone;
+  l.exponent = light.exponent;
+  l.kind = singleHeadlight ? HRT_LIGHT_SINGLE_HEADLIGHT
+    : light.kind == Light::Kind::Positional ? HRT_LIGHT_POSITIONAL
+                                            : HRT_LIGHT_DIRECTIONAL;
+  return l;
+}
+
+} // namespace hrt

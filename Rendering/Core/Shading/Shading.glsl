@@ -1,0 +1,144 @@
+// The one shading source. This file is compiled twice: into the fragment shader of the GPU ray
+// caster and, through Shading.h, into hrt's C++ tracer; a mirror image and a primary hit therefore
+// cannot drift apart. It is written in the common subset of GLSL 1.50 and GLM C++.
+//
+// The equations are those of VTK's own polydata shader (vtkOpenGLPolyDataMapper, ReplaceShaderLight
+// and ReplaceShaderColor), so that a picture with all effects off equals VTK's. They are invariant
+// under rotations: the GPU evaluates them in view coordinates, the tracer in world coordinates.
+//
+// HRT_FUNCTION is `inline` in C++ and empty in GLSL. `real` is float, or double in the reference.
+
+// Light kinds, as in hrt::Light plus VTK's short cut for a scene whose only light is one headlight.
+#define HRT_LIGHT_DIRECTIONAL 0
+#define HRT_LIGHT_POSITIONAL 1
+#define HRT_LIGHT_SINGLE_HEADLIGHT 2
+
+// Lower bound of the base of a specular power: pow(0, 0) is undefined in GLSL, and VTK >= 9.3 uses
+// the same floor. For every power >= 1 the term it adds is below 1e-5, 1/390 of an 8-bit step.
+#define HRT_POW_FLOOR real(1e-5)
+
+struct HrtLight
+{
+  vec3 position;    // unused by directional lights
+  vec3 direction;   // unit, the way the light travels
+  vec3 color;
+  vec3 attenuation; // constant, linear, quadratic
+  real cosCone;     // cosine of the cone's half angle; below -1: no cone
+  real exponent;
+  int kind;
+};
+
+// A surface's colours with their coefficients multiplied in.
+struct HrtSurface
+{
+  vec3 ambient;
+  vec3 diffuse;
+  vec3 specular;
+  real power;
+};
+
+// Barycentric interpolation: u belongs to the second corner, v to the third, as in Moeller-Trumbore.
+HRT_FUNCTION vec3 hrtInterpolate3(vec3 a, vec3 b, vec3 c, real u, real v)
+{
+  return a * (real(1.0) - u - v) + b * u + c * v;
+}
+
+HRT_FUNCTION vec4 hrtInterpolate4(vec4 a, vec4 b, vec4 c, real u, real v)
+{
+  return a * (real(1.0) - u - v) + b * u + c * v;
+}
+
+HRT_FUNCTION vec2 hrtInterpolate2(vec2 a, vec2 b, vec2 c, real u, real v)
+{
+  return a * (real(1.0) - u - v) + b * u + c * v;
+}
+
+// (t, u, v) where the ray meets the triangle's plane; no test whether it is inside. The ray is
+// parallel to the plane when the determinant is 0; then t is not finite.
+HRT_FUNCTION vec3 hrtIntersectPlane(vec3 origin, vec3 direction, vec3 a, vec3 b, vec3 c)
+{
+  vec3 e1 = b - a;
+  vec3 e2 = c - a;
+  vec3 p = cross(direction, e2);
+  real scale = real(1.0) / dot(e1, p);
+  vec3 s = origin - a;
+  vec3 q = cross(s, e1);
+  return vec3(dot(e2, q) * scale, dot(s, p) * scale, dot(direction, q) * scale);
+}
+
+// Moves barycentrics that fall outside the triangle (the rasteriser snaps vertices to a sub-pixel
+// grid, so a pixel's centre may lie a hair outside the triangle it was given to) onto its border.
+HRT_FUNCTION vec2 hrtClampBarycentrics(real u, real v)
+{
+  real cu = clamp(u, real(0.0), real(1.0));
+  real cv = clamp(v, real(0.0), real(1.0));
+  real excess = max(cu + cv - real(1.0), real(0.0));
+  return vec2(max(cu - real(0.5) * excess, real(0.0)), max(cv - real(0.5) * excess, real(0.0)));
+}
+
+// The nearest texel of a width x height table at (s, t), clamped to the edge: VTK's look-up texture.
+HRT_FUNCTION int hrtLookupTexel(vec2 st, int width, int height)
+{
+  int column = int(clamp(floor(st.x * real(width)), real(0.0), real(width - 1)));
+  int row = int(clamp(floor(st.y * real(height)), real(0.0), real(height - 1)));
+  return row * width + column;
+}
+
+// Distance attenuation and cone of a light at a point whose unit direction from the light is `toward`.
+HRT_FUNCTION real hrtAttenuation(HrtLight light, vec3 toward, real distanceToLight)
+{
+  if (light.kind != HRT_LIGHT_POSITIONAL)
+  {
+    return real(1.0);
+  }
+  real attenuation = real(1.0) /
+    (light.attenuation.x + light.attenuation.y * distanceToLight +
+      light.attenuation.z * distanceToLight * distanceToLight);
+  if (light.cosCone >= real(-1.0))
+  {
+    real coneDot = dot(toward, light.direction);
+    if (coneDot < light.cosCone)
+    {
+      return real(0.0);
+    }
+    // VTK's exponent 0 is a cone of even light; a wide cone may have a negative cosine only beyond
+    // 90 degrees, where cosCone is off.
+    attenuation = attenuation * pow(max(coneDot, HRT_POW_FLOOR), light.exponent);
+  }
+  return attenuation;
+}
+
+// The unit direction in which light arrives at a point.
+HRT_FUNCTION vec3 hrtLightDirectionAt(HrtLight light, vec3 position)
+{
+  if (light.kind == HRT_LIGHT_POSITIONAL)
+  {
+    return normalize(position - light.position);
+  }
+  return light.direction;
+}
+
+// What one unshadowed light adds at a point. `normal` is unit and faces the viewer's side;
+// `toViewer` is the unit vector from the point back along the ray that sees it.
+HRT_FUNCTION vec3 hrtShadeLight(
+  HrtSurface surface, HrtLight light, vec3 position, vec3 normal, vec3 toViewer)
+{
+  if (light.kind == HRT_LIGHT_SINGLE_HEADLIGHT)
+  {
+    real facing = max(real(0.0), -dot(normal, light.direction));
+    real lobe = pow(max(facing, HRT_POW_FLOOR), surface.power);
+    return (surface.diffuse * facing + surface.specular * lobe) * light.color;
+  }
+  vec3 toward = hrtLightDirectionAt(light, position);
+  real attenuation = hrtAttenuation(light, toward, length(position - light.position));
+  real facing = max(real(0.0), -attenuation * dot(normal, toward));
+  real lobe = max(HRT_POW_FLOOR, dot(reflect(toward, normal), toViewer));
+  real highlight = sign(facing) * attenuation * pow(lobe, surface.power);
+  return (surface.diffuse * facing + surface.specular * highlight) * light.color;
+}
+
+// The colour of a surface that takes no part in lighting (vtkProperty::LightingOff, or no light).
+HRT_FUNCTION vec3 hrtUnlit(HrtSurface surface)
+{
+  return surface.ambient + surface.diffuse;
+}

@@ -1,0 +1,54 @@
+// Compiles the shared shading source (Shading.glsl) as C++: hrt::shading in single precision, as
+// the GPU evaluates it, and hrt::shading64 in double, for references. Nothing is written twice.
+#pragma once
+
+#include "Rendering/Core/Snapshot.h"
+
+#include <glm/glm.hpp>
+
+#define HRT_FUNCTION inline
+
+namespace hrt
+{
+namespace shading
+{
+using glm::vec2;
+using glm::vec3;
+using glm::vec4;
+using real = float;
+using glm::abs;
+using glm::clamp;
+using glm::cross;
+using glm::dot;
+using glm::floor;
+using glm::length;
+using glm::max;
+using glm::normalize;
+using glm::pow;
+using glm::reflect;
+using glm::sign;
+#include "Rendering/Core/Shading/Shading.glsl"
+}
+
+namespace shading64
+{
+using vec2 = glm::dvec2;
+using vec3 = glm::dvec3;
+using vec4 = glm::dvec4;
+using real = double;
+using glm::abs;
+using glm::clamp;
+using glm::cross;
+using glm::dot;
+using glm::floor;
+using glm::length;
+using glm::max;
+using glm::normalize;
+using glm::pow;
+using glm::reflect;
+using glm::sign;
+#include "Rendering/Core/Shading/Shading.glsl"
+}
+} // namespace hrt
+
+#undef HRT_FUNCTION

@@ -1,0 +1,45 @@
+// The default ray structure: Embree's hierarchies over the exact kernel.
+//
+// Embree's own triangles are tested in single precision and, aimed at vertices of a closed mesh, up
+// to two rays in a hundred slip through even in its robust mode; a filter could reject its wrong
+// hits but never bring back its misses. Triangles are therefore handed to Embree as user geometry:
+// it builds and traverses the hierarchy, over boxes grown by a derived bound (TraversalRay.h), and
+// every triangle whose box the ray meets is decided by Geometry/TriangleTest.h in double. The
+// result is, bit by bit, that of a loop over all triangles, for any instruction set.
+//
+// Two levels: one hierarchy per Geometry, kept by its version and shared by all parts that show it,
+// below one hierarchy of the parts. A moved part costs only the latter.
+#pragma once
+
+#include "Rendering/Core/Structures/Structure.h"
+
+#include <memory>
+#include <string>
+
+namespace hrt
+{
+
+class EmbreeStructure final : public Structure
+{
+public:
+  // `configuration` goes to rtcNewDevice, e.g. "isa=sse2"; empty: Embree's choice. Every error that
+  // Embree reports, here or in update, is thrown as std::runtime_error with Embree's own words.
+  //
+  // Embree recommends flush-to-zero; it is not set here, and must not be set by a host's threads:
+  // the exact kernel needs gradual underflow, and the mode would leak into all code of the thread.
+  explicit EmbreeStructure(const std::string& configuration = {});
+  ~EmbreeStructure() override;
+
+  EmbreeStructure(const EmbreeStructure&) = delete;
+  EmbreeStructure& operator=(const EmbreeStructure&) = delete;
+
+  StructureReport update(const Snapshot& snapshot) override;
+  Hit intersect(const Ray& ray) const override;
+  bool occluded(const Ray& ray) const override;
+
+private:
+  struct Implementation;
+  std::unique_ptr<Implementation> Impl;
+};
+
+} // namespace hrt

@@ -1,0 +1,60 @@
+// The interface of a ray acceleration structure. Rays and hits are in double precision and in world
+// coordinates relative to Snapshot::origin; whatever an implementation does inside, a hit's
+// (t, u, v) is that of the double-precision test of Geometry/TriangleTest.h.
+#pragma once
+
+#include "Rendering/Core/Snapshot.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+
+namespace hrt
+{
+
+struct Ray
+{
+  glm::dvec3 origin{ 0.0 };     // relative to Snapshot::origin
+  glm::dvec3 direction{ 0, 0, -1 }; // need not be normalised; t counts in its length
+  double tMaximum = std::numeric_limits<double>::infinity();
+  // The triangle the ray leaves from: never reported as hit. Replaces a scene epsilon.
+  TriangleId originTriangle = kNoTriangle;
+};
+
+struct Hit
+{
+  TriangleId triangle = kNoTriangle;
+  double t = std::numeric_limits<double>::infinity();
+  double u = 0.0, v = 0.0; // of the second and third corner
+
+  bool valid() const { return triangle != kNoTriangle; }
+};
+
+// What the last update cost and did, for the statistics.
+struct StructureReport
+{
+  std::uint64_t built = 0;  // geometries built anew
+  std::uint64_t refitted = 0;
+  std::uint64_t reused = 0; // geometries taken over from the last update
+  bool partsRebuilt = false;// the placement of the parts was new
+  double milliseconds = 0.0;
+};
+
+class Structure
+{
+public:
+  virtual ~Structure() = default;
+
+  // Brings the structure up to date with a snapshot; builds only what is new. Only parts that are
+  // visible to rays or cast shadows take part. The snapshot's geometries are kept alive by it.
+  virtual StructureReport update(const Snapshot& snapshot) = 0;
+
+  // The nearest hit with 0 < t < tMaximum among the parts visible to rays. Rays with a non-finite
+  // or zero direction are misses. Safe to call from several threads at once.
+  virtual Hit intersect(const Ray& ray) const = 0;
+
+  // True when a part that casts shadows lies at 0 < t < tMaximum. Same rules.
+  virtual bool occluded(const Ray& ray) const = 0;
+};
+
+} // namespace hrt

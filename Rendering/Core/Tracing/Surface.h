@@ -1,0 +1,73 @@
+// From a hit to the surface there: position, sides, normals and colours, as VTK's polydata mapper
+// sees them. The tracer, the buffers handed to the user and the tests all ask here, so that a pixel
+// means the same point to each.
+#pragma once
+
+#include "Rendering/Core/Geometry/TriangleTest.h"
+#include "Rendering/Core/Shading/Shading.h"
+#include "Rendering/Core/Snapshot.h"
+#include "Rendering/Core/Structures/Structure.h"
+
+#include <vector>
+
+namespace hrt
+{
+
+struct SurfacePoint
+{
+  TriangleId triangle = kNoTriangle;
+  std::size_t part = 0;
+  const Material* material = nullptr;
+
+  glm::dvec3 position{ 0.0 };        // relative to Snapshot::origin, on the triangle
+  glm::dvec3 geometricNormal{ 0.0 }; // unit, towards the viewer
+  glm::dvec3 normal{ 0.0 };          // for shading: unit, of the viewer's side as VTK turns it
+  // The same, but turned by the body's outside: no matrix turns the optics of a smooth mesh over.
+  glm::dvec3 opticalNormal{ 0.0 };
+  // By the corners' winding in the world, as gl_FrontFacing; a mirroring matrix swaps the sides.
+  bool frontSide = true;
+  // By the corners' winding in the part's own coordinates: the side that a closed mesh calls its
+  // outside, whatever the matrix. Decides whether a ray enters or leaves glass.
+  bool outside = true;
+
+  shading::HrtSurface colors{};
+  glm::vec3 diffuseColor{ 1.0f }; // without its coefficient: the tint of glass
+  float opacity = 1.0f;
+
+  // How far rounding may have put `position` off the triangle, generously: see Surface.cpp.
+  double positionError = 0.0;
+};
+
+// The parts of one snapshot, placed. The snapshot must outlive it and stay as it is.
+class Surfaces
+{
+public:
+  explicit Surfaces(const Snapshot& snapshot);
+
+  // The ray against the plane of a triangle that the rasteriser found, in double, the barycentrics
+  // moved into the triangle. False when the plane is seen edge-on or lies behind the ray.
+  bool primaryHit(TriangleId id, const Ray& ray, Hit& hit) const;
+
+  // The surface at a hit, as seen along the ray's direction.
+  SurfacePoint at(const Hit& hit, const glm::dvec3& direction) const;
+
+private:
+  struct Placement
+  {
+    glm::dmat4 toScene;
+    glm::dmat3 normalsToScene; // inverse transpose
+    bool mirrored;
+  };
+
+  const Snapshot& Scene;
+  std::vector<Placement> Placements;
+};
+
+// The same for a single pixel, without a table.
+bool primaryHit(const Snapshot& snapshot, TriangleId id, const Ray& ray, Hit& hit);
+
+// A ray that leaves a surface point: it starts off the triangle by the point's rounding error, on
+// the side that it leaves to, and never hits the triangle itself.
+Ray leave(const SurfacePoint& point, const glm::dvec3& direction);
+
+} // namespace hrt

@@ -1,0 +1,68 @@
+// See Blit.h.
+#include "Rendering/OpenGL2/Blit.h"
+
+#include "Rendering/OpenGL2/Shader.h"
+
+#include "vtkOpenGLRenderWindow.h"
+#include "vtkOpenGLState.h"
+#include "vtkShaderProgram.h"
+
+#include "Blit_fs.h"
+#include "ScreenTriangle_vs.h"
+
+namespace hrt
+{
+namespace gl
+{
+
+//------------------------------------------------------------------------------
+Blit::Blit(ObjectPool& pool)
+  : VertexArray(pool.makeVertexArray())
+{
+}
+
+//------------------------------------------------------------------------------
+bool Blit::draw(vtkOpenGLRenderWindow* window, const Image2D& primary, const Image2D* secondary,
+  const ObjectIntersectionBuffer& hits, int x, int y)
+{
+  vtkShaderProgram* program = readyProgram(window, ScreenTriangle_vs, Blit_fs);
+  if (!program)
+  {
+    return false;
+  }
+  vtkOpenGLState* state = window->GetState();
+  vtkOpenGLState::ScopedglViewport viewport(state);
+  vtkOpenGLState::ScopedglEnableDisable blend(state, GL_BLEND);
+  vtkOpenGLState::ScopedglEnableDisable culling(state, GL_CULL_FACE);
+  vtkOpenGLState::ScopedglEnableDisable depthTest(state, GL_DEPTH_TEST);
+  vtkOpenGLState::ScopedglDepthMask depthMask(state);
+  vtkOpenGLState::ScopedglDepthFunc depthFunction(state);
+  state->vtkglViewport(x, y, primary.width(), primary.height());
+  state->vtkglDisable(GL_BLEND);
+  state->vtkglDisable(GL_CULL_FACE);
+  // What an earlier layer left in a preserved depth buffer still hides us.
+  state->vtkglEnable(GL_DEPTH_TEST);
+  state->vtkglDepthMask(GL_TRUE);
+  state->vtkglDepthFunc(GL_LEQUAL);
+
+  ScopedTextureUnits units(3);
+  primary.bind(0);
+  (secondary ? *secondary : primary).bind(1);
+  hits.depth().bind(2);
+  const int origin[2] = { x, y };
+  program->SetUniformi("primaryImage", 0);
+  program->SetUniformi("secondaryImage", 1);
+  program->SetUniformi("hitDepth", 2);
+  program->SetUniform2i("viewportOrigin", origin);
+  program->SetUniformi("useSecondary", secondary ? 1 : 0);
+  program->SetUniformi("reversedDepth", hits.convention().reversed ? 1 : 0);
+
+  glBindVertexArray(this->VertexArray);
+  glDrawArrays(GL_TRIANGLES, 0, 3);
+  glBindVertexArray(0);
+  releaseProgram(window);
+  return true;
+}
+
+} // namespace gl
+} // namespace hrt

@@ -1,0 +1,29 @@
+// The last stage of every frame: the finished image and its true GL depth into the framebuffer that
+// VTK draws to. The only stage of a still scene.
+#pragma once
+
+#include "Rendering/OpenGL2/ObjectIntersectionBuffer.h"
+#include "Rendering/OpenGL2/ObjectPool.h"
+
+class vtkOpenGLRenderWindow;
+
+namespace hrt
+{
+namespace gl
+{
+
+class Blit
+{
+public:
+  explicit Blit(ObjectPool& pool);
+
+  // Draws to the framebuffer that is bound, at the given corner. `secondary` may be null.
+  bool draw(vtkOpenGLRenderWindow* window, const Image2D& primary, const Image2D* secondary,
+    const ObjectIntersectionBuffer& hits, int x, int y);
+
+private:
+  GLuint VertexArray;
+};
+
+} // namespace gl
+} // namespace hrt

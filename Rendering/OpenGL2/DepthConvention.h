@@ -1,0 +1,46 @@
+// How this context's off-screen depth buffers store depth. With ARB_clip_control they are reversed
+// (near 1, far 0, clip space from 0 to w), which spreads the precision of a float buffer evenly over
+// distance; without it they are OpenGL's own. VTK's state cache does not know glClipControl, so the
+// setting is always restored.
+#pragma once
+
+#include "Rendering/OpenGL2/GLHeader.h"
+
+#include <glm/glm.hpp>
+
+namespace hrt
+{
+namespace gl
+{
+
+struct DepthConvention
+{
+  bool reversed = false;
+
+  // What the current context can do.
+  static DepthConvention ofCurrentContext();
+
+  float clearDepth() const { return this->reversed ? 0.0f : 1.0f; }
+  GLenum compare() const { return this->reversed ? GL_GREATER : GL_LESS; }
+
+  // The matrix to draw with, from one for OpenGL's clip space (z from -w to w).
+  glm::dmat4 drawMatrix(const glm::dmat4& clip) const;
+  // Maps to (x, y, d, w) where d / w is the stored depth.
+  glm::dmat4 storedDepthMatrix(const glm::dmat4& clip) const;
+};
+
+// Switches clip control for the time it lives.
+class ScopedDepthConvention
+{
+public:
+  explicit ScopedDepthConvention(const DepthConvention& convention);
+  ~ScopedDepthConvention();
+  ScopedDepthConvention(const ScopedDepthConvention&) = delete;
+  ScopedDepthConvention& operator=(const ScopedDepthConvention&) = delete;
+
+private:
+  DepthConvention Convention;
+};
+
+} // namespace gl
+} // namespace hrt

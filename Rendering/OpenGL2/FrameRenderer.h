@@ -1,0 +1,96 @@
+// Carries out a frame plan: owns the GL side of the pass and the ray structure, runs the stages that
+// the plan asks for, in order, and keeps count of what was done. It decides nothing itself.
+#pragma once
+
+#include "Rendering/OpenGL2/Blit.h"
+#include "Rendering/OpenGL2/DepthConvention.h"
+#include "Rendering/OpenGL2/GeometryBuffers.h"
+#include "Rendering/OpenGL2/HitReadBack.h"
+#include "Rendering/OpenGL2/ObjectIntersectionBuffer.h"
+#include "Rendering/OpenGL2/ObjectPool.h"
+#include "Rendering/OpenGL2/PartTables.h"
+#include "Rendering/OpenGL2/RayCaster.h"
+#include "Rendering/OpenGL2/ShadowMaps.h"
+
+#include "Rendering/Core/Plan/FramePlan.h"
+#include "Rendering/Core/Snapshot.h"
+#include "Rendering/Core/Structures/Structure.h"
+#include "Rendering/Core/Tracing/Tracer.h"
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+class vtkOpenGLRenderWindow;
+
+namespace hrt
+{
+namespace gl
+{
+
+// What one frame did.
+struct FrameStatistics
+{
+  FramePlan plan;
+  std::array<double, kStageCount> milliseconds{}; // of the host, 0 for stages that did not run
+  RayCounters rays;
+  StructureReport structure;
+  std::uint64_t secondaryPixels = 0;
+  std::uint64_t invalidIds = 0;
+  std::uint64_t trianglesDrawn = 0; // rasterised, shadow maps included
+  std::uint64_t bytesReadBack = 0;
+  std::uint64_t bytesUploaded = 0;
+};
+
+class FrameRenderer
+{
+public:
+  // The window's context must be current.
+  explicit FrameRenderer(vtkOpenGLRenderWindow* window);
+
+  // Renders a frame into the bound framebuffer at (x, y). Empty when done, else what went wrong.
+  std::string render(const std::shared_ptr<const Snapshot>& snapshot, const Changes& changes,
+    const Settings& settings, int x, int y);
+
+  const FrameStatistics& statistics() const { return this->Statistics; }
+  const ObjectPool& pool() const { return this->Pool; }
+
+  // For the user's buffers, after render().
+  bool readIds(std::vector<std::uint32_t>& ids);
+  bool readBarycentrics(std::vector<glm::dvec2>& barycentrics); // direct rendering only
+  bool readShadow(int light, std::vector<float>& share);
+
+private:
+  Caches currentCaches(const Snapshot& snapshot, const Settings& settings);
+  std::string runStage(Stage stage, const Snapshot& snapshot, const Settings& settings);
+  std::string uploadGeometry(const Snapshot& snapshot);
+  std::string drawShadowMaps(const Snapshot& snapshot);
+  std::string drawVisibility(const Snapshot& snapshot);
+  std::string shadePrimary(const Snapshot& snapshot);
+  std::string updateStructure(const Snapshot& snapshot);
+  std::string traceSecondaryRays(const Snapshot& snapshot, const Settings& settings);
+  RayCaster::Inputs inputs(const Snapshot& snapshot) const;
+
+  // Destroyed last: all others hold names that it owns.
+  ObjectPool Pool;
+  DepthConvention Convention;
+  GeometryBuffers Geometry;
+  PartTables Tables;
+  ShadowMaps Shadows;
+  ObjectIntersectionBuffer Hits;
+  RayCaster Caster;
+  HitReadBack ReadBack;
+  Image2D Secondary;
+  Blit ToWindow;
+  std::unique_ptr<Structure> Rays;
+
+  std::shared_ptr<const Snapshot> Scene; // of the last frame
+  Settings LastSettings;
+  Caches Valid; // what of the last frame's products may be used again
+  FrameStatistics Statistics;
+};
+
+} // namespace gl
+} // namespace hrt

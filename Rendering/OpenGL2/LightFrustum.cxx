@@ -1,0 +1,189 @@
+// See LightFrustum.h.
+#include "Rendering/OpenGL2/LightFrustum.h"
+
+#include <glm/gtc/matrix_transform.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace hrt
+{
+namespace gl
+{
+namespace
+{
+
+// Room around the fitted box and cone, in texels: a texel whose centre lies just outside of a
+// caster's outline still belongs to a bilinear footprint that straddles it.
+constexpr double kBorderTexels = 2.0;
+
+// Smallest ratio of the near to the far plane of a perspective face. The depth is stored in floats,
+// reversed where possible, so this costs no precision; a light nearer than this to a caster's
+// surface lies, for all purposes, inside it.
+constexpr double kNearestRatio = 1e-4;
+
+// Margin of the near and far planes, so that no caster lies on them.
+constexpr double kDepthMargin = 1e-3;
+
+struct Box
+{
+  glm::dvec3 lower{ std::numeric_limits<double>::infinity() };
+  glm::dvec3 upper{ -std::numeric_limits<double>::infinity() };
+
+  bool valid() const { return this->lower.x <= this->upper.x; }
+  void add(const glm::dvec3& p)
+  {
+    this->lower = glm::min(this->lower, p);
+    this->upper = glm::max(this->upper, p);
+  }
+  glm::dvec3 corner(int k) const
+  {
+    return { k & 1 ? this->upper.x : this->lower.x, k & 2 ? this->upper.y : this->lower.y,
+      k & 4 ? this->upper.z : this->lower.z };
+  }
+};
+
+Box casterBounds(const Snapshot& snapshot)
+{
+  Box box;
+  for (const Part& part : snapshot.parts)
+  {
+    if (part.castsShadow && part.geometry->triangleCount() > 0)
+    {
+      glm::dvec3 lower, upper;
+      worldBounds(part, lower, upper);
+      box.add(lower);
+      box.add(upper);
+    }
+  }
+  return box;
+}
+
+// A right-handed view frame that looks along a unit direction from a point.
+glm::dmat4 lookAlong(const glm::dvec3& eye, const glm::dvec3& direction)
+{
+  const glm::dvec3 up =
+    std::abs(direction.y) < 0.9 ? glm::dvec3(0, 1, 0) : glm::dvec3(1, 0, 0);
+  return glm::lookAt(eye, eye + direction, up);
+}
+
+LightFace directionalFace(
+  const Snapshot& snapshot, const Light& light, const Box& casters, int resolution)
+{
+  const glm::dvec3 centre = 0.5 * (casters.lower + casters.upper);
+  const glm::dmat4 view = lookAlong(centre, light.direction);
+  Box box;
+  for (int k = 0; k < 8; ++k)
+  {
+    box.add(glm::dvec3(view * glm::dvec4(casters.corner(k), 1.0)));
+  }
+  // One square texel size in both directions; an empty extent (one flat caster seen edge-on) still
+  // needs a frustum.
+  const double extent = glm::length(casters.upper - casters.lower);
+  const glm::dvec2 middle = 0.5 * (glm::dvec2(box.lower) + glm::dvec2(box.upper));
+  const double half = 0.5 * std::max({ box.upper.x - box.lower.x, box.upper.y - box.lower.y,
+                              extent * kDepthMargin, std::numeric_limits<double>::min() });
+  const double padded = half / (1.0 - 2.0 * kBorderTexels / resolution);
+
+  LightFace face;
+  const double margin = std::max(extent * kDepthMargin, std::numeric_limits<double>::min());
+  face.near = -box.upper.z - margin;
+  face.far = -box.lower.z + margin;
+  if (light.isHeadlight && !snapshot.camera.parallel)
+  {
+    // A headlight shines from the plane through the viewer's eye on, not from behind.
+    face.near = std::max(face.near, -(view * glm::dvec4(light.position, 1.0)).z);
+    face.far = std::max(face.far, face.near + margin);
+  }
+  face.worldToClip = glm::ortho(middle.x - padded, middle.x + padded, middle.y - padded,
+                       middle.y + padded, face.near, face.far) *
+    view;
+  face.texelConstant = 2.0 * padded / resolution;
+  face.reach = face.far - face.near;
+  return face;
+}
+
+LightFace perspectiveFace(const Light& light, const glm::dvec3& direction, const glm::dvec3& up,
+  double halfAngle, double near, double far, int resolution)
+{
+  const double tangent = std::tan(halfAngle) / (1.0 - 2.0 * kBorderTexels / resolution);
+  LightFace face;
+  face.perspective = true;
+  face.near = near;
+  face.far = far;
+  face.worldToClip = glm::frustum(-near * tangent, near * tangent, -near * tangent,
+                       near * tangent, near, far) *
+    glm::lookAt(light.position, light.position + direction, up);
+  face.texelLinear = 2.0 * tangent / resolution;
+  face.reach = far;
+  return face;
+}
+
+// Distances of the casters' box from a point: nearest (0 inside) and farthest.
+void distanceRange(const Box& box, const glm::dvec3& p, double& nearest, double& farthest)
+{
+  nearest = glm::length(glm::max(glm::max(box.lower - p, p - box.upper), glm::dvec3(0.0)));
+  farthest = 0.0;
+  for (int k = 0; k < 8; ++k)
+  {
+    farthest = std::max(farthest, glm::length(box.corner(k) - p));
+  }
+}
+
+std::vector<LightFace> positionalFaces(const Light& light, const Box& casters, int resolution)
+{
+  double nearest = 0.0, farthest = 0.0;
+  distanceRange(casters, light.position, nearest, farthest);
+  if (!(farthest > 0.0))
+  {
+    return {};
+  }
+  const double far = farthest * (1.0 + kDepthMargin);
+  std::vector<LightFace> faces;
+  if (light.coneAngle <= kWidestSpot)
+  {
+    // Within the cone a caster at distance r lies at least r * cos(cone) ahead.
+    const double half = glm::radians(double(light.coneAngle));
+    const double near = std::max(nearest * std::cos(half) * (1.0 - kDepthMargin), far * kNearestRatio);
+    const glm::dvec3 up =
+      std::abs(light.direction.y) < 0.9 ? glm::dvec3(0, 1, 0) : glm::dvec3(1, 0, 0);
+    faces.push_back(perspectiveFace(light, light.direction, up, half, near, far, resolution));
+    return faces;
+  }
+  // On a cube face a caster at distance r lies at least r / sqrt(3) ahead.
+  const double near =
+    std::max(nearest / std::sqrt(3.0) * (1.0 - kDepthMargin), far * kNearestRatio);
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    for (double sign : { 1.0, -1.0 })
+    {
+      glm::dvec3 direction(0.0), up(0.0);
+      direction[axis] = sign;
+      up[(axis + 1) % 3] = 1.0;
+      faces.push_back(perspectiveFace(
+        light, direction, up, glm::radians(45.0), near, far, resolution));
+    }
+  }
+  return faces;
+}
+
+} // namespace
+
+//------------------------------------------------------------------------------
+std::vector<LightFace> fitLightFaces(const Snapshot& snapshot, const Light& light, int resolution)
+{
+  const Box casters = casterBounds(snapshot);
+  if (!casters.valid())
+  {
+    return {};
+  }
+  if (light.kind == Light::Kind::Directional)
+  {
+    return { directionalFace(snapshot, light, casters, resolution) };
+  }
+  return positionalFaces(light, casters, resolution);
+}
+
+} // namespace gl
+} // namespace hrt

@@ -1,0 +1,107 @@
+// See ObjectIntersectionBuffer.h.
+#include "Rendering/OpenGL2/ObjectIntersectionBuffer.h"
+
+#include "Rendering/OpenGL2/OffscreenState.h"
+#include "Rendering/OpenGL2/Shader.h"
+
+#include "vtkOpenGLRenderWindow.h"
+#include "vtkOpenGLState.h"
+#include "vtkShaderProgram.h"
+
+#include "ObjectIntersectionBuffer_fs.h"
+#include "ObjectIntersectionBuffer_vs.h"
+
+namespace hrt
+{
+namespace gl
+{
+namespace
+{
+
+// As VTK's property does it; both flags together hide everything.
+void setCulling(vtkOpenGLState* state, const Material& material)
+{
+  if (!material.cullFront && !material.cullBack)
+  {
+    state->vtkglDisable(GL_CULL_FACE);
+    return;
+  }
+  state->vtkglEnable(GL_CULL_FACE);
+  state->vtkglCullFace(material.cullFront ? (material.cullBack ? GL_FRONT_AND_BACK : GL_FRONT)
+                                          : GL_BACK);
+}
+
+} // namespace
+
+//------------------------------------------------------------------------------
+ObjectIntersectionBuffer::ObjectIntersectionBuffer(
+  ObjectPool& pool, const DepthConvention& convention)
+  : Hits(pool)
+  , Depth(pool)
+  , Framebuffer(pool.makeFramebuffer())
+  , Convention(convention)
+{
+}
+
+//------------------------------------------------------------------------------
+bool ObjectIntersectionBuffer::resize(int width, int height, Visibility visibility)
+{
+  const bool direct = visibility == Visibility::DirectRendering;
+  const bool newHits = this->Hits.allocate(width, height, direct ? GL_RGBA32UI : GL_R32UI,
+    direct ? GL_RGBA_INTEGER : GL_RED_INTEGER, GL_UNSIGNED_INT);
+  const bool newDepth =
+    this->Depth.allocate(width, height, GL_DEPTH_COMPONENT32F, GL_DEPTH_COMPONENT, GL_FLOAT);
+  this->Mode = visibility;
+  return newHits || newDepth;
+}
+
+//------------------------------------------------------------------------------
+bool ObjectIntersectionBuffer::draw(
+  vtkOpenGLRenderWindow* window, const Snapshot& snapshot, const GeometryBuffers& geometry)
+{
+  this->TrianglesDrawn = 0;
+  OffscreenState target(window, this->Framebuffer, this->Hits.width(), this->Hits.height());
+  glFramebufferTexture2D(
+    GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, this->Hits.name(), 0);
+  glFramebufferTexture2D(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_TEXTURE_2D, this->Depth.name(), 0);
+  if (!target.complete("object intersection buffer"))
+  {
+    return false;
+  }
+  vtkShaderProgram* program =
+    readyProgram(window, ObjectIntersectionBuffer_vs, ObjectIntersectionBuffer_fs);
+  if (!program)
+  {
+    return false;
+  }
+  program->SetUniformi("directRendering", this->Mode == Visibility::DirectRendering ? 1 : 0);
+
+  const GLuint noHit[4] = { 0, 0, 0, 0 };
+  const GLfloat far = this->Convention.clearDepth();
+  target.beginDepthPass(this->Convention);
+  glClearBufferuiv(GL_COLOR, 0, noHit);
+  glClearBufferfv(GL_DEPTH, 0, &far);
+
+  ScopedDepthConvention depth(this->Convention);
+  geometry.bindForDrawing(static_cast<GLuint>(program->GetHandle()));
+  const glm::dmat4 toClip = this->Convention.drawMatrix(snapshot.camera.viewToClip) *
+    snapshot.camera.worldToView;
+  for (const Part& part : snapshot.parts)
+  {
+    if (!part.visibleToCamera || part.geometry->triangleCount() == 0)
+    {
+      continue;
+    }
+    setCulling(window->GetState(), part.material);
+    glm::mat4 matrix(toClip * part.positionsToWorld());
+    program->SetUniformMatrix4x4("positionToClip", &matrix[0][0]);
+    geometry.draw(part);
+    this->TrianglesDrawn += part.geometry->triangleCount();
+  }
+  glBindVertexArray(0);
+  releaseProgram(window);
+  return true;
+}
+
+} // namespace gl
+} // namespace hrt

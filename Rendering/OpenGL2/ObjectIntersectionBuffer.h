@@ -1,0 +1,55 @@
+// The object intersection buffer (paper, section 2.1): per pixel the visible triangle and, in direct
+// rendering, the rasteriser's (u, v). An own single-sample framebuffer with one integer target: the
+// paper codes the number in RGB (2^24 triangles), an integer target holds 2^32 - 1.
+#pragma once
+
+#include "Rendering/OpenGL2/DepthConvention.h"
+#include "Rendering/OpenGL2/GeometryBuffers.h"
+#include "Rendering/OpenGL2/ObjectPool.h"
+
+#include "Rendering/Core/Plan/FramePlan.h"
+#include "Rendering/Core/Snapshot.h"
+
+#include <cstdint>
+
+class vtkOpenGLRenderWindow;
+
+namespace hrt
+{
+namespace gl
+{
+
+// Direct rendering stores (u, v) as whole multiples of 1 / kBarycentricOne; the shaders use the same.
+inline constexpr double kBarycentricOne = 2147483648.0; // 2^31
+
+class ObjectIntersectionBuffer
+{
+public:
+  ObjectIntersectionBuffer(ObjectPool& pool, const DepthConvention& convention);
+
+  // Makes the target fit; true when what it held is lost.
+  bool resize(int width, int height, Visibility visibility);
+
+  // Rasterises the parts that the camera sees. Returns false when a shader or the framebuffer is
+  // not usable; an error message has been given then.
+  bool draw(vtkOpenGLRenderWindow* window, const Snapshot& snapshot,
+    const GeometryBuffers& geometry);
+
+  const Image2D& hits() const { return this->Hits; }
+  const Image2D& depth() const { return this->Depth; }
+  Visibility visibility() const { return this->Mode; }
+  const DepthConvention& convention() const { return this->Convention; }
+  GLuint framebuffer() const { return this->Framebuffer; }
+  std::uint64_t trianglesDrawn() const { return this->TrianglesDrawn; }
+
+private:
+  Image2D Hits, Depth;
+  GLuint Framebuffer;
+  DepthConvention Convention;
+  Visibility Mode = Visibility::ItemBuffer;
+  bool Complete = false;
+  std::uint64_t TrianglesDrawn = 0; // in the last draw
+};
+
+} // namespace gl
+} // namespace hrt

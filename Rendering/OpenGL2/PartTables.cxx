@@ -1,0 +1,93 @@
+// See PartTables.h.
+#include "Rendering/OpenGL2/PartTables.h"
+
+#include "Rendering/Core/Shading/Lighting.h"
+
+#include <glm/gtc/matrix_inverse.hpp>
+
+namespace hrt
+{
+namespace gl
+{
+namespace
+{
+
+void appendTerms(std::vector<glm::vec4>& table, const PhongTerms& terms)
+{
+  table.emplace_back(terms.ambientColor, terms.ambient);
+  table.emplace_back(terms.diffuseColor, terms.diffuse);
+  table.emplace_back(terms.specularColor * terms.specular, terms.specularPower);
+}
+
+void appendPart(std::vector<glm::vec4>& table, const Part& part, const glm::dmat4& worldToView)
+{
+  const glm::dmat4 toView = worldToView * part.positionsToWorld();
+  const glm::dmat3 normals = glm::inverseTranspose(glm::dmat3(toView));
+  for (int column = 0; column < 4; ++column)
+  {
+    table.emplace_back(glm::vec4(toView[column]));
+  }
+  // A common factor does not change a direction; without it the matrix of a part that is scaled far
+  // from unit size could leave the range of float.
+  const double scale = 1.0 / glm::length(normals[0]);
+  for (int column = 0; column < 3; ++column)
+  {
+    table.emplace_back(glm::vec3(normals[column] * scale), 0.0f);
+  }
+  appendTerms(table, part.material.front);
+  appendTerms(table, part.material.back);
+  const bool scalarColors = part.geometry->colorSource != ColorSource::Property;
+  table.emplace_back(scalarColors ? 1.0f : 0.0f, part.material.lit ? 1.0f : 0.0f, 0.0f, 0.0f);
+}
+
+void appendLight(std::vector<glm::vec4>& table, const Light& light, bool singleHeadlight,
+  const glm::dmat4& worldToView, const ShadowSlot& shadow)
+{
+  const shading::HrtLight l = shadingLight(light, singleHeadlight, worldToView);
+  table.emplace_back(l.position, static_cast<float>(l.kind));
+  table.emplace_back(l.direction, l.cosCone);
+  table.emplace_back(l.color, l.exponent);
+  table.emplace_back(l.attenuation, 0.0f);
+  table.emplace_back(
+    static_cast<float>(shadow.firstFace), static_cast<float>(shadow.faceCount), 0.0f, 0.0f);
+}
+
+} // namespace
+
+//------------------------------------------------------------------------------
+PartTables::PartTables(ObjectPool& pool)
+  : Parts(pool, GL_RGBA32F)
+  , Lights(pool, GL_RGBA32F)
+{
+}
+
+//------------------------------------------------------------------------------
+void PartTables::update(const Snapshot& snapshot, const std::vector<ShadowSlot>& shadows)
+{
+  std::vector<glm::vec4> parts;
+  parts.reserve(snapshot.parts.size() * kPartTexels);
+  for (const Part& part : snapshot.parts)
+  {
+    appendPart(parts, part, snapshot.camera.worldToView);
+  }
+  this->Parts.upload(parts.data(), parts.size() * sizeof(parts[0]), GL_STREAM_DRAW);
+
+  std::vector<glm::vec4> lights;
+  lights.reserve(snapshot.lights.size() * kLightTexels);
+  for (std::size_t i = 0; i < snapshot.lights.size(); ++i)
+  {
+    appendLight(lights, snapshot.lights[i], snapshot.singleHeadlight, snapshot.camera.worldToView,
+      shadows[i]);
+  }
+  this->Lights.upload(lights.data(), lights.size() * sizeof(lights[0]), GL_STREAM_DRAW);
+}
+
+//------------------------------------------------------------------------------
+void PartTables::bindTables(int firstUnit) const
+{
+  this->Parts.bind(firstUnit);
+  this->Lights.bind(firstUnit + 1);
+}
+
+} // namespace gl
+} // namespace hrt

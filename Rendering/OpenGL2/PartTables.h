@@ -1,0 +1,50 @@
+// The small tables that change from frame to frame: each part's matrices and material and each
+// light, in view coordinates, composed in double precision and only then rounded to float.
+#pragma once
+
+#include "Rendering/OpenGL2/ObjectPool.h"
+
+#include "Rendering/Core/Snapshot.h"
+
+#include <vector>
+
+namespace hrt
+{
+namespace gl
+{
+
+// Layout of the tables; the same names are handed to the shaders as #defines.
+//   part:   0-3 positions to view coordinates, 4-6 normals to view coordinates,
+//           7-9 front: (ambient colour, ambient) (diffuse colour, diffuse) (specular, power),
+//           10-12 back: the same, 13 flags
+//   layout: (first triangle, normals, colours, coordinates) (lookup start, width, height, 0)
+//   light:  (position, kind) (direction, cosine of the cone) (colour, exponent)
+//           (attenuation, 0) (first shadow face, number of faces, 0, 0)
+inline constexpr int kPartTexels = 14;
+inline constexpr int kLayoutTexels = 2;
+inline constexpr int kLightTexels = 5;
+
+// Where a light's shadow map lies among all faces; count 0: the light casts none.
+struct ShadowSlot
+{
+  int firstFace = 0;
+  int faceCount = 0;
+};
+
+class PartTables
+{
+public:
+  explicit PartTables(ObjectPool& pool);
+
+  void update(const Snapshot& snapshot, const std::vector<ShadowSlot>& shadows);
+
+  // part table, light table
+  static constexpr int kUnits = 2;
+  void bindTables(int firstUnit) const;
+
+private:
+  TextureBuffer Parts, Lights;
+};
+
+} // namespace gl
+} // namespace hrt

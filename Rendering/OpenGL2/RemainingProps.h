@@ -1,0 +1,51 @@
+// Everything that the ray tracer does not draw itself, drawn by VTK in its usual order over our
+// image and against our depth: opaque props left to VTK (lines, points, textured actors, ...),
+// translucent geometry with depth peeling when asked for, volumes and overlays.
+#pragma once
+
+#include "vtkNew.h"
+#include "vtkSmartPointer.h"
+
+#include <functional>
+#include <vector>
+
+class vtkOpaquePass;
+class vtkOpenGLFXAAFilter;
+class vtkOverlayPass;
+class vtkProp;
+class vtkRenderPass;
+class vtkRenderState;
+class vtkTranslucentPass;
+class vtkVolumetricPass;
+class vtkWindow;
+
+namespace hrt
+{
+namespace gl
+{
+
+class RemainingProps
+{
+public:
+  RemainingProps();
+  ~RemainingProps();
+
+  // `traced` tells which props are already in the picture. Returns the number of props drawn.
+  int draw(const vtkRenderState* state, const std::function<bool(vtkProp*)>& traced);
+
+  void releaseGraphicsResources(vtkWindow* window);
+
+private:
+  int drawTranslucent(const vtkRenderState& state);
+
+  vtkNew<vtkOpaquePass> Opaque;
+  vtkNew<vtkTranslucentPass> Translucent;
+  vtkNew<vtkVolumetricPass> Volumetric;
+  vtkNew<vtkOverlayPass> Overlay;
+  vtkSmartPointer<vtkRenderPass> Peeling;
+  vtkSmartPointer<vtkRenderPass> OrderIndependent;
+  vtkSmartPointer<vtkOpenGLFXAAFilter> FXAA;
+};
+
+} // namespace gl
+} // namespace hrt

@@ -1,0 +1,65 @@
+// See Shader.h.
+#include "Rendering/OpenGL2/Shader.h"
+
+#include "Rendering/OpenGL2/PartTables.h"
+#include "Rendering/OpenGL2/ShadowMaps.h"
+
+#include "vtkOpenGLRenderWindow.h"
+#include "vtkOpenGLShaderCache.h"
+#include "vtkShaderProgram.h"
+
+#include "RayCaster_fs.h"
+#include "Shading.h"
+
+#include <sstream>
+
+namespace hrt
+{
+namespace gl
+{
+namespace
+{
+
+std::string definitions()
+{
+  std::ostringstream text;
+  text.precision(9);
+  text << std::showpoint;
+  text << "#define real float\n#define HRT_FUNCTION\n";
+  text << "#define PART_TEXELS " << kPartTexels << "\n";
+  text << "#define LAYOUT_TEXELS " << kLayoutTexels << "\n";
+  text << "#define LIGHT_TEXELS " << kLightTexels << "\n";
+  text << "#define FACE_TEXELS " << kFaceTexels << "\n";
+  text << "#define FACE_SEAM " << kFaceSeam << "\n";
+  text << "#define MINIMUM_COSINE2 " << kMinimumCosine2 << "\n";
+  return text.str();
+}
+
+} // namespace
+
+//------------------------------------------------------------------------------
+vtkShaderProgram* readyProgram(
+  vtkOpenGLRenderWindow* window, const char* vertexShader, const std::string& fragmentShader)
+{
+  return window->GetShaderCache()->ReadyShaderProgram(vertexShader, fragmentShader.c_str(), "");
+}
+
+//------------------------------------------------------------------------------
+const std::string& rayCasterSource()
+{
+  static const std::string source = [] {
+    std::string text = RayCaster_fs;
+    vtkShaderProgram::Substitute(text, "//HRT::Shading", definitions() + Shading);
+    return text;
+  }();
+  return source;
+}
+
+//------------------------------------------------------------------------------
+void releaseProgram(vtkOpenGLRenderWindow* window)
+{
+  window->GetShaderCache()->ReleaseCurrentShader();
+}
+
+} // namespace gl
+} // namespace hrt

@@ -1,0 +1,27 @@
+// Shader programs come from VTK's cache, which adds the version line for the context at hand, shares
+// programs between passes and frees them with the window. This puts the one shading source and the
+// table layouts into a shader's text and readies the program.
+#pragma once
+
+#include <string>
+
+class vtkOpenGLRenderWindow;
+class vtkShaderProgram;
+
+namespace hrt
+{
+namespace gl
+{
+
+// Null after an error message when a shader does not compile.
+vtkShaderProgram* readyProgram(
+  vtkOpenGLRenderWindow* window, const char* vertexShader, const std::string& fragmentShader);
+
+// The ray caster's fragment shader with the shared shading source and the layouts filled in.
+const std::string& rayCasterSource();
+
+// Forgets the current program, in VTK's cache too.
+void releaseProgram(vtkOpenGLRenderWindow* window);
+
+} // namespace gl
+} // namespace hrt

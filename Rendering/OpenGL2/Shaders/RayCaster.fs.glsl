@@ -1,0 +1,217 @@
+//VTK::System::Dec
+// The GPU ray caster (paper, section 3.2): for every pixel, look the triangle up in the object
+// intersection buffer, intersect it with the primary ray or take the interpolated (u, v), test the
+// shadow maps and shade. All positions are in view coordinates.
+//HRT::Shading
+
+uniform usampler2D hitBuffer;
+uniform usamplerBuffer trianglePart; // part number of each triangle
+uniform samplerBuffer positions;     // 3 corners a triangle
+uniform samplerBuffer normals;
+uniform samplerBuffer colors;
+uniform samplerBuffer coordinates;
+uniform samplerBuffer lookups;
+uniform samplerBuffer partTable;     // PART_TEXELS a part, see PartTables.h
+uniform isamplerBuffer partLayout;   // LAYOUT_TEXELS a part
+uniform samplerBuffer lightTable;    // LIGHT_TEXELS a light
+uniform samplerBuffer shadowFaces;   // FACE_TEXELS a face, see ShadowMaps.h
+uniform sampler2D shadowAtlas;
+uniform float shadowClearDepth;
+uniform int lightCount;
+uniform int unlitScene;              // no light at all
+uniform int directRendering;
+uniform int shadowLight;             // >= 0: write this light's visible share instead of a colour
+uniform vec2 viewportSize;
+uniform vec3 rayOrigin0, rayOriginX, rayOriginY;
+uniform vec3 rayDirection0, rayDirectionX, rayDirectionY;
+out vec4 fragmentColor;
+
+mat4 fetchMatrix(samplerBuffer table, int at)
+{
+  return mat4(texelFetch(table, at), texelFetch(table, at + 1), texelFetch(table, at + 2),
+    texelFetch(table, at + 3));
+}
+
+HrtLight fetchLight(int index)
+{
+  int at = index * LIGHT_TEXELS;
+  vec4 t0 = texelFetch(lightTable, at);
+  vec4 t1 = texelFetch(lightTable, at + 1);
+  vec4 t2 = texelFetch(lightTable, at + 2);
+  vec4 t3 = texelFetch(lightTable, at + 3);
+  return HrtLight(t0.xyz, t1.xyz, t2.xyz, t3.xyz, t1.w, t2.w, int(t0.w));
+}
+
+// Share of a light that reaches a point, from one face of its shadow map. The map's depth at a
+// texel's centre is compared with the depth, on the same line of sight, of the plane of the
+// receiving triangle: a plane never shadows itself, whatever its slope, and the bias only has to
+// cover rounding and the bend between neighbouring facets (see ShadowMaps.h).
+float faceVisibility(int at, vec4 clip, vec4 planeVC, float cosine)
+{
+  mat4 planeToClip = fetchMatrix(shadowFaces, at + 4);
+  vec4 depthToDistance = texelFetch(shadowFaces, at + 8);
+  vec4 tile = texelFetch(shadowFaces, at + 9);  // origin, size in texels, bend bias
+  vec4 scale = texelFetch(shadowFaces, at + 10);// texel size: x + y * distance; rounding: z + w * d^2
+  vec4 plane = planeToClip * planeVC;
+
+  vec2 ndc = clip.xy / clip.w;
+  vec2 texel = (ndc * 0.5 + 0.5) * tile.z - 0.5;
+  vec2 corner = floor(texel);
+  vec2 weight = texel - corner;
+  float cosine2 = max(cosine * cosine, MINIMUM_COSINE2);
+  float share[4];
+  for (int k = 0; k < 4; ++k)
+  {
+    vec2 place = clamp(corner + vec2(float(k % 2), float(k / 2)), vec2(0.0), vec2(tile.z - 1.0));
+    float stored = texelFetch(shadowAtlas, ivec2(tile.xy + place), 0).r;
+    share[k] = 1.0;
+    if (stored != shadowClearDepth)
+    {
+      vec2 centre = (place + 0.5) / tile.z * 2.0 - 1.0;
+      float depth = -(plane.x * centre.x + plane.y * centre.y + plane.w) / plane.z;
+      float receiver = (depthToDistance.x + depthToDistance.y * depth) /
+        (depthToDistance.z + depthToDistance.w * depth);
+      float occluder = (depthToDistance.x + depthToDistance.y * stored) /
+        (depthToDistance.z + depthToDistance.w * stored);
+      float bias = tile.w * (scale.x + scale.y * occluder) / cosine2 + scale.z +
+        scale.w * occluder * occluder;
+      share[k] = occluder < receiver - bias ? 0.0 : 1.0;
+    }
+  }
+  // Written so that four equal shares give exactly that share.
+  float low = share[0] + (share[1] - share[0]) * weight.x;
+  float high = share[2] + (share[3] - share[2]) * weight.x;
+  return low + (high - low) * weight.y;
+}
+
+// Share of a light that reaches point p of a triangle with unit normal ng on the viewer's side.
+float lightVisibility(int index, HrtLight light, vec3 p, vec3 ng)
+{
+  vec4 t4 = texelFetch(lightTable, index * LIGHT_TEXELS + 4);
+  int faceCount = int(t4.y);
+  if (faceCount == 0)
+  {
+    return 1.0;
+  }
+  float cosine = -dot(ng, hrtLightDirectionAt(light, p));
+  if (cosine <= 0.0)
+  {
+    return 0.0; // the surface turns its back to the light
+  }
+  vec4 planeVC = vec4(ng, -dot(ng, p));
+  for (int face = 0; face < faceCount; ++face)
+  {
+    int at = (int(t4.x) + face) * FACE_TEXELS;
+    vec4 clip = fetchMatrix(shadowFaces, at) * vec4(p, 1.0);
+    // A point on the seam of two cube faces belongs to either; rounding must not lose it to both.
+    float limit = clip.w * FACE_SEAM;
+    if (clip.w > 0.0 && abs(clip.x) <= limit && abs(clip.y) <= limit)
+    {
+      return faceVisibility(at, clip, planeVC, cosine);
+    }
+  }
+  return 1.0; // outside of the map no caster stands between
+}
+
+HrtSurface fetchSurface(
+  int part, ivec4 bases, ivec4 more, vec4 flags, int corner, vec2 uv, bool front)
+{
+  int at = part * PART_TEXELS + (front || flags.x == 1.0 ? 7 : 10);
+  vec4 ambient = texelFetch(partTable, at);
+  vec4 diffuse = texelFetch(partTable, at + 1);
+  vec4 specular = texelFetch(partTable, at + 2);
+  if (bases.z >= 0)
+  {
+    int c = bases.z * 3 + corner;
+    vec3 rgb = hrtInterpolate4(texelFetch(colors, c), texelFetch(colors, c + 1),
+      texelFetch(colors, c + 2), uv.x, uv.y).rgb;
+    ambient.rgb = rgb;
+    diffuse.rgb = rgb;
+  }
+  else if (bases.w >= 0)
+  {
+    int c = bases.w * 3 + corner;
+    vec2 st = hrtInterpolate2(texelFetch(coordinates, c).rg, texelFetch(coordinates, c + 1).rg,
+      texelFetch(coordinates, c + 2).rg, uv.x, uv.y);
+    vec3 rgb = texelFetch(lookups, more.x + hrtLookupTexel(st, more.y, more.z)).rgb;
+    ambient.rgb = rgb;
+    diffuse.rgb = rgb;
+  }
+  return HrtSurface(ambient.rgb * ambient.w, diffuse.rgb * diffuse.w, specular.rgb, specular.w);
+}
+
+void main()
+{
+  uvec4 hit = texelFetch(hitBuffer, ivec2(gl_FragCoord.xy), 0);
+  if (hit.x == 0u)
+  {
+    discard;
+  }
+  int triangle = int(hit.x - 1u);
+  int part = int(texelFetch(trianglePart, triangle).r);
+  ivec4 bases = texelFetch(partLayout, part * LAYOUT_TEXELS);    // first triangle, normals, colours, coordinates
+  ivec4 more = texelFetch(partLayout, part * LAYOUT_TEXELS + 1); // lookup start, width, height
+  vec4 flags = texelFetch(partTable, part * PART_TEXELS + 13); // scalar colours, lit
+  int corner = (triangle - bases.x) * 3; // within the part
+
+  mat4 positionToView = fetchMatrix(partTable, part * PART_TEXELS);
+  vec3 a = (positionToView * texelFetch(positions, triangle * 3)).xyz;
+  vec3 b = (positionToView * texelFetch(positions, triangle * 3 + 1)).xyz;
+  vec3 c = (positionToView * texelFetch(positions, triangle * 3 + 2)).xyz;
+
+  vec2 ndc = gl_FragCoord.xy / viewportSize * 2.0 - 1.0;
+  vec3 origin = rayOrigin0 + ndc.x * rayOriginX + ndc.y * rayOriginY;
+  vec3 direction = rayDirection0 + ndc.x * rayDirectionX + ndc.y * rayDirectionY;
+
+  vec2 uv;
+  if (directRendering == 1)
+  {
+    uv = vec2(hit.yz) / 2147483648.0;
+  }
+  else
+  {
+    vec3 tuv = hrtIntersectPlane(origin, direction, a, b, c);
+    uv = hrtClampBarycentrics(tuv.y, tuv.z);
+  }
+  vec3 p = hrtInterpolate3(a, b, c, uv.x, uv.y);
+
+  vec3 face = cross(b - a, c - a);
+  bool front = dot(face, direction) <= 0.0;
+  vec3 ng = normalize(front ? face : -face);
+  vec3 n = ng;
+  if (bases.y >= 0)
+  {
+    int at = bases.y * 3 + corner;
+    mat3 toView = mat3(texelFetch(partTable, part * PART_TEXELS + 4).xyz,
+      texelFetch(partTable, part * PART_TEXELS + 5).xyz,
+      texelFetch(partTable, part * PART_TEXELS + 6).xyz);
+    n = normalize(toView * hrtInterpolate3(texelFetch(normals, at).xyz,
+      texelFetch(normals, at + 1).xyz, texelFetch(normals, at + 2).xyz, uv.x, uv.y));
+    n = front ? n : -n;
+  }
+
+  if (shadowLight >= 0)
+  {
+    fragmentColor = vec4(lightVisibility(shadowLight, fetchLight(shadowLight), p, ng));
+    return;
+  }
+
+  HrtSurface surface = fetchSurface(part, bases, more, flags, corner, uv, front);
+  vec3 color = hrtUnlit(surface);
+  if (flags.y == 1.0 && unlitScene == 0)
+  {
+    color = surface.ambient;
+    // As VTK does for every projection, the viewer is taken to be at the view coordinates' origin.
+    vec3 toViewer = normalize(-p);
+    for (int i = 0; i < lightCount; ++i)
+    {
+      HrtLight light = fetchLight(i);
+      vec3 term = hrtShadeLight(surface, light, p, n, toViewer);
+      if (term != vec3(0.0))
+      {
+        color += term * lightVisibility(i, light, p, ng);
+      }
+    }
+  }
+  fragmentColor = vec4(color, 1.0);
+}

@@ -1,0 +1,224 @@
+// See ShadowMaps.h.
+#include "Rendering/OpenGL2/ShadowMaps.h"
+
+#include "Rendering/OpenGL2/OffscreenState.h"
+#include "Rendering/OpenGL2/Shader.h"
+
+#include "vtkOpenGLRenderWindow.h"
+#include "vtkShaderProgram.h"
+
+#include "ShadowMap_fs.h"
+#include "ShadowMap_vs.h"
+
+#include <glm/gtc/matrix_inverse.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace hrt
+{
+namespace gl
+{
+namespace
+{
+
+// How many faces fitLightFaces makes for a light, known before the casters are.
+int faceCount(const Light& light)
+{
+  return light.kind == Light::Kind::Positional && light.coneAngle > kWidestSpot ? 6 : 1;
+}
+
+// distance = (x + y * depth) / (z + w * depth) for a stored depth.
+glm::vec4 depthToDistance(const LightFace& face, bool reversed)
+{
+  const double n = face.near;
+  const double f = face.far;
+  // In terms of s, 0 at the near and 1 at the far plane: orthographic n + s (f - n), perspective
+  // n f / (f - s (f - n)).
+  const glm::dvec4 k =
+    face.perspective ? glm::dvec4(n * f, 0.0, f, n - f) : glm::dvec4(n, f - n, 1.0, 0.0);
+  return reversed ? glm::vec4(k.x + k.y, -k.y, k.z + k.w, -k.w) : glm::vec4(k);
+}
+
+} // namespace
+
+//------------------------------------------------------------------------------
+ShadowMaps::ShadowMaps(ObjectPool& pool, const DepthConvention& convention)
+  : Atlas(pool)
+  , Faces(pool, GL_RGBA32F)
+  , Framebuffer(pool.makeFramebuffer())
+  , Convention(convention)
+{
+}
+
+//------------------------------------------------------------------------------
+glm::ivec2 ShadowMaps::tile(int face) const
+{
+  return this->Resolution * glm::ivec2(face % this->Columns, face / this->Columns);
+}
+
+//------------------------------------------------------------------------------
+std::vector<bool> ShadowMaps::prepare(
+  const Snapshot& snapshot, const std::vector<bool>& wanted, int resolution)
+{
+  std::vector<Map> maps(snapshot.lights.size());
+  int faces = 0;
+  for (std::size_t i = 0; i < maps.size(); ++i)
+  {
+    maps[i].key = snapshot.lights[i].key;
+    maps[i].firstFace = faces;
+    maps[i].faceCount = wanted[i] ? faceCount(snapshot.lights[i]) : 0;
+    faces += maps[i].faceCount;
+  }
+  const int columns = std::max(1, static_cast<int>(std::ceil(std::sqrt(double(faces)))));
+  const int rows = std::max(1, (faces + columns - 1) / columns);
+  GLint limit = 0;
+  glGetIntegerv(GL_MAX_TEXTURE_SIZE, &limit);
+  const int fitted = std::min(resolution, static_cast<int>(limit) / columns);
+
+  bool lost = fitted != this->Resolution || columns != this->Columns;
+  this->Resolution = fitted;
+  this->Columns = columns;
+  if (faces > 0)
+  {
+    lost = this->Atlas.allocate(columns * fitted, rows * fitted, GL_DEPTH_COMPONENT32F,
+             GL_DEPTH_COMPONENT, GL_FLOAT) ||
+      lost;
+  }
+  std::vector<bool> present(maps.size(), false);
+  for (std::size_t i = 0; i < maps.size() && !lost; ++i)
+  {
+    const auto old = std::find_if(this->Maps.begin(), this->Maps.end(), [&](const Map& m) {
+      return m.key == maps[i].key && m.firstFace == maps[i].firstFace &&
+        m.faceCount == maps[i].faceCount && m.valid;
+    });
+    if (old != this->Maps.end())
+    {
+      maps[i] = *old;
+      present[i] = true;
+    }
+  }
+  this->Maps = maps;
+  this->Slots.assign(maps.size(), ShadowSlot());
+  for (std::size_t i = 0; i < maps.size(); ++i)
+  {
+    this->Slots[i].firstFace = maps[i].firstFace;
+    this->Slots[i].faceCount = maps[i].valid ? maps[i].faceCount : 0;
+  }
+  return present;
+}
+
+//------------------------------------------------------------------------------
+bool ShadowMaps::draw(vtkOpenGLRenderWindow* window, const Snapshot& snapshot,
+  const GeometryBuffers& geometry, const std::vector<bool>& draw)
+{
+  this->TrianglesDrawn = 0;
+  OffscreenState target(
+    window, this->Framebuffer, this->Atlas.width(), this->Atlas.height());
+  glFramebufferTexture2D(
+    GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_TEXTURE_2D, this->Atlas.name(), 0);
+  glDrawBuffer(GL_NONE);
+  glReadBuffer(GL_NONE);
+  if (!target.complete("shadow maps"))
+  {
+    return false;
+  }
+  vtkShaderProgram* program = readyProgram(window, ShadowMap_vs, ShadowMap_fs);
+  if (!program)
+  {
+    return false;
+  }
+  target.beginDepthPass(this->Convention);
+  ScopedDepthConvention depth(this->Convention);
+  geometry.bindForDrawing(static_cast<GLuint>(program->GetHandle()));
+  const GLfloat clear = this->Convention.clearDepth();
+  for (std::size_t i = 0; i < this->Maps.size(); ++i)
+  {
+    Map& map = this->Maps[i];
+    if (!draw[i] || map.faceCount == 0)
+    {
+      continue;
+    }
+    map.faces = fitLightFaces(snapshot, snapshot.lights[i], this->Resolution);
+    map.valid = static_cast<int>(map.faces.size()) == map.faceCount;
+    for (std::size_t k = 0; k < map.faces.size(); ++k)
+    {
+      const glm::ivec2 at = this->tile(map.firstFace + static_cast<int>(k));
+      target.setViewport(at.x, at.y, this->Resolution, this->Resolution);
+      glClearBufferfv(GL_DEPTH, 0, &clear);
+      const glm::dmat4 toClip = this->Convention.drawMatrix(map.faces[k].worldToClip);
+      for (const Part& part : snapshot.parts)
+      {
+        if (part.castsShadow && part.geometry->triangleCount() > 0)
+        {
+          glm::mat4 matrix(toClip * part.positionsToWorld());
+          program->SetUniformMatrix4x4("positionToClip", &matrix[0][0]);
+          geometry.draw(part);
+          this->TrianglesDrawn += part.geometry->triangleCount();
+        }
+      }
+    }
+    this->Slots[i].faceCount = map.valid ? map.faceCount : 0;
+  }
+  glBindVertexArray(0);
+  releaseProgram(window);
+  return true;
+}
+
+//------------------------------------------------------------------------------
+void ShadowMaps::updateTable(const Snapshot& snapshot)
+{
+  const glm::dmat4 viewToWorld = glm::inverse(snapshot.camera.worldToView);
+  // Extent of the numbers that the shader computes with: the scene as seen from the eye.
+  double extent = 0.0;
+  for (int k = 0; k < 8; ++k)
+  {
+    const glm::dvec3 corner(k & 1 ? snapshot.boundsMax.x : snapshot.boundsMin.x,
+      k & 2 ? snapshot.boundsMax.y : snapshot.boundsMin.y,
+      k & 4 ? snapshot.boundsMax.z : snapshot.boundsMin.z);
+    extent = std::max(
+      extent, glm::length(glm::dvec3(snapshot.camera.worldToView * glm::dvec4(corner, 1.0))));
+  }
+  const double bend = std::sqrt(2.0) * std::tan(glm::radians(kSmoothFold));
+
+  std::vector<glm::vec4> table;
+  for (const Map& map : this->Maps)
+  {
+    for (int k = 0; k < map.faceCount; ++k)
+    {
+      // A face that has never been drawn keeps its place; its slot says that nobody looks there.
+      const LightFace face = map.valid ? map.faces[static_cast<std::size_t>(k)] : LightFace();
+      const glm::dmat4 toStored =
+        this->Convention.storedDepthMatrix(face.worldToClip) * viewToWorld;
+      const glm::dmat4 planes = glm::inverseTranspose(toStored);
+      for (int column = 0; column < 4; ++column)
+      {
+        table.emplace_back(toStored[column]);
+      }
+      for (int column = 0; column < 4; ++column)
+      {
+        table.emplace_back(planes[column]);
+      }
+      table.push_back(depthToDistance(face, this->Convention.reversed));
+      table.emplace_back(glm::vec2(this->tile(map.firstFace + k)),
+        static_cast<float>(this->Resolution), static_cast<float>(bend));
+      // Without reversed depth, the float of a perspective map near 1 resolves 2^-24 d^2 / near.
+      const double quadratic =
+        face.perspective && !this->Convention.reversed ? kRounding / face.near : 0.0;
+      table.emplace_back(static_cast<float>(face.texelConstant),
+        static_cast<float>(face.texelLinear),
+        static_cast<float>(kRounding * (extent + face.reach)), static_cast<float>(quadratic));
+    }
+  }
+  this->Faces.upload(table.data(), table.size() * sizeof(glm::vec4), GL_STREAM_DRAW);
+}
+
+//------------------------------------------------------------------------------
+void ShadowMaps::bindTables(int firstUnit) const
+{
+  this->Faces.bind(firstUnit);
+  this->Atlas.bind(firstUnit + 1);
+}
+
+} // namespace gl
+} // namespace hrt

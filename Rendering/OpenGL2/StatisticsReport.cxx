@@ -1,0 +1,157 @@
+// See StatisticsReport.h.
+#include "Rendering/OpenGL2/StatisticsReport.h"
+
+#include <cstdio>
+#include <sstream>
+
+namespace hrt
+{
+namespace gl
+{
+namespace
+{
+
+std::string quoted(const std::string& text)
+{
+  std::string out = "\"";
+  for (const char c : text)
+  {
+    if (c == '"' || c == '\\')
+    {
+      out += '\\';
+      out += c;
+    }
+    else if (static_cast<unsigned char>(c) < 0x20)
+    {
+      char escape[8];
+      std::snprintf(escape, sizeof(escape), "\\u%04x", static_cast<unsigned>(c));
+      out += escape;
+    }
+    else
+    {
+      out += c;
+    }
+  }
+  return out + "\"";
+}
+
+// Writes "name": value pairs of one JSON object.
+class Object
+{
+public:
+  explicit Object(std::ostream& out)
+    : Out(out)
+  {
+    this->Out << "{";
+  }
+  ~Object() { this->Out << "}"; }
+  Object(const Object&) = delete;
+  Object& operator=(const Object&) = delete;
+
+  std::ostream& key(const std::string& name)
+  {
+    this->Out << (this->First ? "" : ", ") << quoted(name) << ": ";
+    this->First = false;
+    return this->Out;
+  }
+  template <class T>
+  void number(const std::string& name, T value)
+  {
+    this->key(name) << value;
+  }
+  void text(const std::string& name, const std::string& value) { this->key(name) << quoted(value); }
+  void boolean(const std::string& name, bool value)
+  {
+    this->key(name) << (value ? "true" : "false");
+  }
+
+private:
+  std::ostream& Out;
+  bool First = true;
+};
+
+void decision(std::ostream& out, const StageDecision& stage, double milliseconds)
+{
+  Object object(out);
+  object.boolean("ran", stage.run);
+  object.text("reason", stage.reason);
+  object.number("ms", milliseconds);
+}
+
+void rays(std::ostream& out, const RayCount& count)
+{
+  Object object(out);
+  object.number("asked", count.asked);
+  object.number("answered", count.answered);
+  object.number("traced", count.traced);
+}
+
+} // namespace
+
+//------------------------------------------------------------------------------
+std::string statisticsReport(const FrameStatistics& statistics, const Snapshot& snapshot,
+  const std::vector<std::pair<std::string, std::string>>& leftToVTK)
+{
+  std::ostringstream out;
+  {
+    Object report(out);
+    {
+      Object stages(report.key("stages"));
+      for (std::size_t i = 0; i < kStageCount; ++i)
+      {
+        decision(stages.key(stageName(static_cast<Stage>(i))), statistics.plan.stages[i],
+          statistics.milliseconds[i]);
+      }
+    }
+    std::ostream& maps = report.key("shadow_maps");
+    maps << "[";
+    for (std::size_t i = 0; i < statistics.plan.shadowMaps.size(); ++i)
+    {
+      maps << (i ? ", " : "");
+      Object map(maps);
+      map.boolean("ran", statistics.plan.shadowMaps[i].run);
+      map.text("reason", statistics.plan.shadowMaps[i].reason);
+    }
+    maps << "]";
+    {
+      Object classes(report.key("rays"));
+      rays(classes.key("reflection"), statistics.rays.reflection);
+      rays(classes.key("refraction"), statistics.rays.refraction);
+      rays(classes.key("shadow"), statistics.rays.shadow);
+    }
+    {
+      Object structure(report.key("structure"));
+      structure.number("built", statistics.structure.built);
+      structure.number("refitted", statistics.structure.refitted);
+      structure.number("reused", statistics.structure.reused);
+      structure.number("ms", statistics.structure.milliseconds);
+    }
+    {
+      Object refused(report.key("refused"));
+      refused.number("non_finite_points", snapshot.refusals.nonFinitePoints);
+      refused.number("invalid_indices", snapshot.refusals.invalidIndices);
+      refused.number("degenerate_triangles", snapshot.refusals.degenerateTriangles);
+      refused.number("empty_parts", snapshot.refusals.emptyParts);
+      refused.number("singular_matrices", snapshot.refusals.singularMatrices);
+    }
+    {
+      Object left(report.key("left_to_vtk"));
+      for (const auto& actor : leftToVTK)
+      {
+        left.text(actor.first, actor.second);
+      }
+    }
+    report.number("triangles", snapshot.triangleCount);
+    report.number("parts", snapshot.parts.size());
+    report.number("lights", snapshot.lights.size());
+    report.number("secondary_pixels", statistics.secondaryPixels);
+    report.number("invalid_ids", statistics.invalidIds);
+    report.number("triangles_drawn", statistics.trianglesDrawn);
+    report.number("bytes_read_back", statistics.bytesReadBack);
+    report.number("bytes_uploaded", statistics.bytesUploaded);
+  }
+  return out.str();
+}
+
+} // namespace gl
+} // namespace hrt

@@ -1,0 +1,316 @@
+// The VTK face of the module: settings, the order of a frame, and what VTK expects of a render pass.
+// The work is done by vtkHybridScene (what there is to draw), hrt::planFrame (what has to be done)
+// and hrt::gl::FrameRenderer (doing it).
+#include "vtkHybridRayTracingPass.h"
+
+#include "Rendering/OpenGL2/FrameRenderer.h"
+#include "Rendering/OpenGL2/RemainingProps.h"
+#include "Rendering/OpenGL2/StatisticsReport.h"
+#include "Rendering/OpenGL2/UserBuffers.h"
+#include "Rendering/Scene/vtkHybridScene.h"
+
+#include "vtkCommand.h"
+#include "vtkImageData.h"
+#include "vtkObjectFactory.h"
+#include "vtkOpenGLRenderWindow.h"
+#include "vtkProp.h"
+#include "vtkRenderState.h"
+#include "vtkRenderer.h"
+
+#include <algorithm>
+#include <sstream>
+#include <utility>
+
+vtkStandardNewMacro(vtkHybridRayTracingPass);
+
+//------------------------------------------------------------------------------
+class vtkHybridRayTracingPass::vtkInternals
+{
+public:
+  // Makes the GL side for a window, anew when its context is another one than last time.
+  hrt::gl::FrameRenderer& Frame(vtkOpenGLRenderWindow* window)
+  {
+    if (this->Renderer && !this->Renderer->pool().belongsToCurrentContextOf(window))
+    {
+      this->Renderer.reset();
+    }
+    if (!this->Renderer)
+    {
+      this->Renderer = std::make_unique<hrt::gl::FrameRenderer>(window);
+    }
+    return *this->Renderer;
+  }
+
+  vtkNew<vtkHybridScene> Scene;
+  std::unique_ptr<hrt::gl::FrameRenderer> Renderer;
+  hrt::gl::RemainingProps Remaining;
+  hrt::gl::UserBuffers Buffers;
+  std::string Statistics = "{}";
+};
+
+//------------------------------------------------------------------------------
+vtkHybridRayTracingPass::vtkHybridRayTracingPass()
+  : Internals(new vtkInternals)
+{
+}
+
+//------------------------------------------------------------------------------
+vtkHybridRayTracingPass::~vtkHybridRayTracingPass() = default;
+
+//------------------------------------------------------------------------------
+void vtkHybridRayTracingPass::PrintSelf(ostream& os, vtkIndent indent)
+{
+  this->Superclass::PrintSelf(os, indent);
+  os << indent << "Visibility: "
+     << (this->Visibility == ItemBuffer ? "ItemBuffer" : "DirectRendering") << "\n";
+  os << indent << "ShadowMode: " << (this->ShadowMode == ShadowsOff ? "Off" : "ShadowMaps") << "\n";
+  os << indent << "ShadowMapResolution: " << this->ShadowMapResolution << "\n";
+  os << indent << "Reflections: " << (this->Reflections ? "On" : "Off") << "\n";
+  os << indent << "Refractions: " << (this->Refractions ? "On" : "Off") << "\n";
+  os << indent << "MaximumDepth: " << this->MaximumDepth << "\n";
+  os << indent << "Buffers:";
+  for (const std::string& name : this->Internals->Buffers.names())
+  {
+    os << " " << name;
+  }
+  os << "\n";
+}
+
+//------------------------------------------------------------------------------
+void vtkHybridRayTracingPass::SetVisibility(int visibility)
+{
+  if (visibility != ItemBuffer && visibility != DirectRendering)
+  {
+    vtkErrorMacro("SetVisibility: " << visibility
+                                    << " is neither ItemBuffer (0) nor DirectRendering (1)");
+    return;
+  }
+  if (this->Visibility != visibility)
+  {
+    this->Visibility = visibility;
+    this->Modified();
+  }
+}
+
+//------------------------------------------------------------------------------
+void vtkHybridRayTracingPass::SetShadowMode(int mode)
+{
+  if (mode != ShadowsOff && mode != ShadowMaps)
+  {
+    vtkErrorMacro("SetShadowMode: " << mode << " is neither ShadowsOff (0) nor ShadowMaps (1)");
+    return;
+  }
+  if (this->ShadowMode != mode)
+  {
+    this->ShadowMode = mode;
+    this->Modified();
+  }
+}
+
+//------------------------------------------------------------------------------
+void vtkHybridRayTracingPass::SetShadowMapResolution(int resolution)
+{
+  const int clamped = std::min(std::max(resolution, 16), 16384);
+  if (this->ShadowMapResolution != clamped)
+  {
+    this->ShadowMapResolution = clamped;
+    this->Modified();
+  }
+}
+
+//------------------------------------------------------------------------------
+void vtkHybridRayTracingPass::SetMaximumDepth(int depth)
+{
+  const int clamped = std::min(std::max(depth, 0), 32);
+  if (this->MaximumDepth != clamped)
+  {
+    this->MaximumDepth = clamped;
+    this->Modified();
+  }
+}
+
+//------------------------------------------------------------------------------
+void vtkHybridRayTracingPass::SetBuffers(const std::vector<std::string>& names)
+{
+  const std::vector<std::string>& known = hrt::gl::UserBuffers::knownNames();
+  std::vector<std::string> wanted;
+  for (const std::string& name : names)
+  {
+    if (std::find(known.begin(), known.end(), name) == known.end())
+    {
+      std::string all;
+      for (const std::string& k : known)
+      {
+        all += (all.empty() ? "" : ", ") + k;
+      }
+      vtkErrorMacro("SetBuffers: there is no buffer \"" << name << "\"; the buffers are " << all);
+      return;
+    }
+    if (std::find(wanted.begin(), wanted.end(), name) == wanted.end())
+    {
+      wanted.push_back(name);
+    }
+  }
+  if (wanted != this->Internals->Buffers.names())
+  {
+    this->Internals->Buffers.setNames(wanted);
+    this->Modified();
+  }
+}
+
+//------------------------------------------------------------------------------
+std::vector<std::string> vtkHybridRayTracingPass::GetBuffers()
+{
+  return this->Internals->Buffers.names();
+}
+
+//------------------------------------------------------------------------------
+std::vector<std::string> vtkHybridRayTracingPass::GetKnownBuffers()
+{
+  return hrt::gl::UserBuffers::knownNames();
+}
+
+//------------------------------------------------------------------------------
+vtkImageData* vtkHybridRayTracingPass::GetBuffer(const char* name)
+{
+  const std::string wanted = name ? name : "";
+  const auto& names = this->Internals->Buffers.names();
+  if (std::find(names.begin(), names.end(), wanted) == names.end())
+  {
+    vtkErrorMacro("GetBuffer: \"" << wanted << "\" was not asked for with SetBuffers");
+    return nullptr;
+  }
+  vtkImageData* image = this->Internals->Buffers.image(wanted);
+  if (!image)
+  {
+    vtkErrorMacro("GetBuffer: \"" << wanted << "\" has not been rendered yet");
+  }
+  return image;
+}
+
+//------------------------------------------------------------------------------
+vtkProp* vtkHybridRayTracingPass::GetPropFromId(vtkIdType id)
+{
+  return id < 0 ? nullptr : this->Internals->Scene->GetProp(static_cast<std::size_t>(id));
+}
+
+//------------------------------------------------------------------------------
+std::string vtkHybridRayTracingPass::GetStatistics()
+{
+  return this->Internals->Statistics;
+}
+
+//------------------------------------------------------------------------------
+int vtkHybridRayTracingPass::GetNumberOfOpenGLObjects()
+{
+  return this->Internals->Renderer
+    ? static_cast<int>(this->Internals->Renderer->pool().size())
+    : 0;
+}
+
+//------------------------------------------------------------------------------
+void vtkHybridRayTracingPass::ReleaseGraphicsResources(vtkWindow* window)
+{
+  this->Internals->Remaining.releaseGraphicsResources(window);
+  // A pass may be told about a window that it never drew to.
+  if (this->Internals->Renderer && this->Internals->Renderer->pool().window() == window)
+  {
+    this->Internals->Renderer.reset();
+  }
+}
+
+//------------------------------------------------------------------------------
+void vtkHybridRayTracingPass::Render(const vtkRenderState* s)
+{
+  this->NumberOfRenderedProps = 0;
+  vtkRenderer* renderer = s->GetRenderer();
+  auto* window = vtkOpenGLRenderWindow::SafeDownCast(renderer->GetRenderWindow());
+  if (!window)
+  {
+    vtkErrorMacro("the renderer has no OpenGL render window");
+    return;
+  }
+  this->UpdateCamera(renderer);
+  this->UpdateLightGeometry(renderer);
+  this->UpdateLights(renderer);
+  if (renderer->GetSelector())
+  {
+    // The selector draws props by its own rules; our picture would overwrite its ids.
+    this->UpdateGeometry(renderer, s->GetFrameBuffer());
+    this->NumberOfRenderedProps = s->GetPropArrayCount();
+    return;
+  }
+  int width = 0, height = 0, x = 0, y = 0;
+  renderer->GetTiledSizeAndOrigin(&width, &height, &x, &y);
+  if (width <= 0 || height <= 0)
+  {
+    return;
+  }
+
+  vtkInternals& in = *this->Internals;
+  in.Scene->Update(renderer);
+  const std::shared_ptr<const hrt::Snapshot> snapshot = in.Scene->GetSnapshot();
+
+  hrt::Settings settings;
+  settings.visibility = this->Visibility == DirectRendering ? hrt::Visibility::DirectRendering
+                                                            : hrt::Visibility::ItemBuffer;
+  settings.shadows =
+    this->ShadowMode == ShadowsOff ? hrt::ShadowMode::Off : hrt::ShadowMode::ShadowMaps;
+  settings.shadowMapResolution = this->ShadowMapResolution;
+  settings.reflections = this->Reflections;
+  settings.refractions = this->Refractions;
+  settings.maximumDepth = this->MaximumDepth;
+
+  hrt::gl::FrameRenderer& frame = in.Frame(window);
+  std::string error = frame.render(snapshot, in.Scene->GetChanges(), settings, x, y);
+  if (!error.empty())
+  {
+    vtkErrorMacro("the frame is drawn by VTK alone: " << error);
+    this->UpdateGeometry(renderer, s->GetFrameBuffer());
+    this->NumberOfRenderedProps = s->GetPropArrayCount();
+    return;
+  }
+  if (!in.Buffers.names().empty())
+  {
+    // Any stage that ran may have changed what they show.
+    if (frame.statistics().plan[hrt::Stage::PrimaryShading].run || in.Scene->GetChanges().any())
+    {
+      in.Buffers.invalidate();
+    }
+    if (!in.Buffers.current())
+    {
+      error = in.Buffers.update(frame, *snapshot);
+      if (!error.empty())
+      {
+        vtkErrorMacro("the buffers are not available: " << error);
+      }
+    }
+  }
+
+  std::vector<std::pair<std::string, std::string>> left;
+  int traced = 0;
+  const auto isTraced = [&](vtkProp* prop) { return in.Scene->IsDrawnByTracer(prop); };
+  for (int i = 0; i < s->GetPropArrayCount(); ++i)
+  {
+    vtkProp* prop = s->GetPropArray()[i];
+    const std::string reason = in.Scene->GetReasonLeftToVTK(prop);
+    if (isTraced(prop))
+    {
+      ++traced;
+    }
+    else if (!reason.empty())
+    {
+      std::ostringstream name;
+      name << prop->GetClassName() << " (" << prop << ")";
+      left.emplace_back(name.str(), reason);
+    }
+  }
+  this->NumberOfRenderedProps = traced + in.Remaining.draw(s, isTraced);
+  in.Statistics = hrt::gl::statisticsReport(frame.statistics(), *snapshot, left);
+
+  const GLenum glError = glGetError();
+  if (glError != GL_NO_ERROR)
+  {
+    vtkErrorMacro("OpenGL reported error 0x" << std::hex << glError << std::dec);
+  }
+}

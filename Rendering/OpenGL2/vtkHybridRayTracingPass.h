@@ -1,0 +1,194 @@
+// The class that scripts use: a render pass that gives a vtkRenderer shadows, mirrors and glass.
+/**
+ * @class   vtkHybridRayTracingPass
+ * @brief   hybrid ray tracing of a renderer's surfaces
+ *
+ * A drop-in render pass: `renderer->SetPass(pass)` is all a script needs. The pass rasterises an
+ * object intersection buffer (the triangle visible at each pixel) and one shadow map per light in
+ * VTK's own OpenGL context, shades the primary image with VTK's own lighting equations on the GPU,
+ * and traces what mirrors and glass show on the CPU. A still scene costs one blit; a scene without
+ * mirror or glass in view traces no ray and reads nothing back. See GetStatistics().
+ *
+ * It implements P. C. D. Robert, S. Schoepke and H. Bieri, "Hybrid Ray Tracing: Ray Tracing Using
+ * GPU-Accelerated Image-Space Methods".
+ *
+ * What is read from VTK: actors (also in assemblies) with polygonal data, their properties and
+ * scalar colours, all kinds of vtkLight, the camera's composed matrices, the background. Mirrors
+ * and glass are asked for per actor with vtkHybridMaterial. Everything else - lines, points, text,
+ * textured, physically based and translucent actors, volumes, 2D props - is drawn by VTK itself,
+ * after and against the traced picture's depth. Picking with vtkHardwareSelector works as without
+ * the pass.
+ *
+ * Framebuffer in: the one bound when Render is called (the renderer's). Framebuffer out: colour and
+ * depth of the renderer's viewport. The render state is not modified.
+ *
+ * @sa vtkHybridMaterial
+ */
+
+#ifndef vtkHybridRayTracingPass_h
+#define vtkHybridRayTracingPass_h
+
+#include "vtkHybridRenderingOpenGL2Module.h" // for export macro
+#include "vtkRenderPass.h"
+
+#include <memory> // for std::unique_ptr
+#include <string> // for std::string
+#include <vector> // for std::vector
+
+class vtkImageData;
+class vtkProp;
+
+class VTKHYBRIDRENDERINGOPENGL2_EXPORT vtkHybridRayTracingPass : public vtkRenderPass
+{
+public:
+  static vtkHybridRayTracingPass* New();
+  vtkTypeMacro(vtkHybridRayTracingPass, vtkRenderPass);
+  void PrintSelf(ostream& os, vtkIndent indent) override;
+
+  /**
+   * Draws the renderer of the state. Called by vtkRenderer.
+   */
+  void Render(const vtkRenderState* s) override;
+
+  /**
+   * Frees every OpenGL object. Called by vtkRenderer; also done when the pass is deleted.
+   */
+  void ReleaseGraphicsResources(vtkWindow* window) override;
+
+  enum VisibilityType
+  {
+    ItemBuffer = 0,
+    DirectRendering = 1
+  };
+
+  ///@{
+  /**
+   * How the first hit of each pixel is found (paper, section 2.1). ItemBuffer: the rasteriser gives
+   * the triangle, exactly one ray-triangle intersection gives the point. DirectRendering: the
+   * rasteriser also interpolates (u, v), no intersection is computed; errors up to 5e-4 in (u, v).
+   * Default: ItemBuffer.
+   */
+  void SetVisibility(int visibility);
+  vtkGetMacro(Visibility, int);
+  void SetVisibilityToItemBuffer() { this->SetVisibility(ItemBuffer); }
+  void SetVisibilityToDirectRendering() { this->SetVisibility(DirectRendering); }
+  ///@}
+
+  enum ShadowModeType
+  {
+    ShadowsOff = 0,
+    ShadowMaps = 1
+  };
+
+  ///@{
+  /**
+   * Shadows. ShadowMaps: one depth map per light (paper, section 2.2), for directional, spot and
+   * point lights; a surface seen in a mirror or through glass is shadowed by rays. Opaque actors
+   * cast; translucent ones and glass let all light through. A positional headlight sits in the
+   * viewer's eye and shows no shadow. Default: ShadowMaps.
+   */
+  void SetShadowMode(int mode);
+  vtkGetMacro(ShadowMode, int);
+  void SetShadowModeToOff() { this->SetShadowMode(ShadowsOff); }
+  void SetShadowModeToShadowMaps() { this->SetShadowMode(ShadowMaps); }
+  ///@}
+
+  ///@{
+  /**
+   * Texels along each side of a shadow map (of each of the six faces for a point light). A map
+   * takes 4 bytes a texel. Range [16, 16384], clamped; less when the context's textures are
+   * smaller. Default: 2048.
+   */
+  void SetShadowMapResolution(int resolution);
+  vtkGetMacro(ShadowMapResolution, int);
+  ///@}
+
+  ///@{
+  /**
+   * Trace what mirrors (vtkHybridMaterial::SetReflectance) and the outside of glass reflect.
+   * Default: on.
+   */
+  vtkSetMacro(Reflections, bool);
+  vtkGetMacro(Reflections, bool);
+  vtkBooleanMacro(Reflections, bool);
+  ///@}
+
+  ///@{
+  /**
+   * Trace what is seen through glass (vtkHybridMaterial::SetGlass); off, glass is shaded as its
+   * vtkProperty says. Default: on.
+   */
+  vtkSetMacro(Refractions, bool);
+  vtkGetMacro(Refractions, bool);
+  vtkBooleanMacro(Refractions, bool);
+  ///@}
+
+  ///@{
+  /**
+   * Number of times a ray may be reflected or refracted; what lies beyond adds nothing. Range
+   * [0, 32], clamped; 0 switches secondary rays off. Default: 3, as in the paper.
+   */
+  void SetMaximumDepth(int depth);
+  vtkGetMacro(MaximumDepth, int);
+  ///@}
+
+  ///@{
+  /**
+   * Per-pixel results to keep besides the picture, by name; nothing is computed that was not asked
+   * for. Names: "triangle" (number in the scene), "cell" (vtkPolyData cell), "prop" (see
+   * GetPropFromId), all three 64-bit with -1 where nothing was hit; "barycentric" (u, v of the
+   * second and third corner; with DirectRendering as the rasteriser interpolated them), "position" (world), "normal" (world, unit, on the viewer's side),
+   * "depth" (distance along the view axis), "shadow" (one component a light: its visible share,
+   * 1 lit to 0 in shadow), all with NaN where nothing was hit. An unknown name is an error and
+   * changes nothing. GetKnownBuffers lists all names. Default: none.
+   */
+  void SetBuffers(const std::vector<std::string>& names);
+  std::vector<std::string> GetBuffers();
+  static std::vector<std::string> GetKnownBuffers();
+  ///@}
+
+  /**
+   * A buffer of the last frame as an image of the viewport's size with one point array of that
+   * name, row 0 at the bottom. Null, after an error message, for a name that is unknown, was not
+   * asked for with SetBuffers, or has not been rendered yet.
+   */
+  vtkImageData* GetBuffer(const char* name);
+
+  /**
+   * The prop of a number in the "prop" buffer; null for -1 and numbers out of range.
+   */
+  vtkProp* GetPropFromId(vtkIdType id);
+
+  /**
+   * What the last frame did, as JSON: which stages ran, why or why not, and the host's
+   * milliseconds; rays by class; triangles drawn; bytes read back and uploaded; structures built;
+   * triangles refused at the scene's door; actors left to VTK and why. From Python use
+   * vtkhybrid.statistics(pass), which returns a dictionary.
+   */
+  std::string GetStatistics();
+
+  /**
+   * OpenGL objects that the pass holds at the moment; 0 after ReleaseGraphicsResources.
+   */
+  int GetNumberOfOpenGLObjects();
+
+protected:
+  vtkHybridRayTracingPass();
+  ~vtkHybridRayTracingPass() override;
+
+private:
+  vtkHybridRayTracingPass(const vtkHybridRayTracingPass&) = delete;
+  void operator=(const vtkHybridRayTracingPass&) = delete;
+
+  int Visibility = ItemBuffer;
+  int ShadowMode = ShadowMaps;
+  int ShadowMapResolution = 2048;
+  bool Reflections = true;
+  bool Refractions = true;
+  int MaximumDepth = 3;
+
+  class vtkInternals;
+  std::unique_ptr<vtkInternals> Internals;
+};
+
+#endif

@@ -1,0 +1,119 @@
+// Walks the view props by their assembly paths. The paths are collected before anything is done
+// with them: updating a pipeline may run user code that changes the very collections walked here.
+
+#include "Rendering/Scene/ActorPaths.h"
+
+#include "Rendering/Scene/VTKConversions.h"
+
+#include "vtkActor.h"
+#include "vtkAssembly.h"
+#include "vtkAssemblyNode.h"
+#include "vtkAssemblyPath.h"
+#include "vtkFollower.h"
+#include "vtkPropAssembly.h"
+#include "vtkPropCollection.h"
+#include "vtkRenderer.h"
+
+namespace hrt
+{
+namespace scene
+{
+namespace
+{
+
+//------------------------------------------------------------------------------
+// The finaliser of SplitMix64 (Steele, Lea, Flood 2014): every bit of the input moves every bit.
+std::uint64_t mix(std::uint64_t x)
+{
+  x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9ull;
+  x = (x ^ (x >> 27)) * 0x94d049bb133111ebull;
+  return x ^ (x >> 31);
+}
+
+//------------------------------------------------------------------------------
+std::uint64_t keyOf(const std::vector<vtkProp*>& props)
+{
+  std::uint64_t key = 0x9e3779b97f4a7c15ull; // the increment of SplitMix64
+  for (vtkProp* prop : props)
+  {
+    key = mix(key + reinterpret_cast<std::uintptr_t>(prop));
+  }
+  return key;
+}
+
+//------------------------------------------------------------------------------
+glm::dmat4 matrixOf(vtkAssemblyNode* node)
+{
+  return node && node->GetMatrix() ? toMatrix(node->GetMatrix()) : glm::dmat4(1.0);
+}
+
+//------------------------------------------------------------------------------
+// Reads a path that ends in an actor; false for any other.
+bool readPath(vtkAssemblyPath* source, ActorPath& path)
+{
+  vtkAssemblyNode* parent = nullptr;
+  vtkAssemblyNode* last = nullptr;
+  vtkCollectionSimpleIterator it;
+  source->InitTraversal(it);
+  while (auto* node = vtkAssemblyNode::SafeDownCast(source->GetNextItemAsObject(it)))
+  {
+    parent = last;
+    last = node;
+    path.props.push_back(node->GetViewProp());
+    path.visible = path.visible && node->GetViewProp()->GetVisibility();
+  }
+  path.actor = last ? vtkActor::SafeDownCast(last->GetViewProp()) : nullptr;
+  if (!path.actor)
+  {
+    return false;
+  }
+  path.localToWorld = matrixOf(last);
+  if (parent && path.actor->IsA("vtkFollower"))
+  {
+    // Assemblies keep their paths until a part is modified, which a follower is not when the camera
+    // that it faces moves.
+    path.actor->ComputeMatrix();
+    path.localToWorld = matrixOf(parent) * toMatrix(path.actor->GetMatrix());
+  }
+  path.key = keyOf(path.props);
+  return true;
+}
+
+//------------------------------------------------------------------------------
+// Other props draw themselves by rules of their own, also where they offer paths.
+bool hasActorPaths(vtkProp* prop)
+{
+  return vtkActor::SafeDownCast(prop) || vtkAssembly::SafeDownCast(prop) ||
+    vtkPropAssembly::SafeDownCast(prop);
+}
+
+} // anonymous namespace
+
+//------------------------------------------------------------------------------
+std::vector<ActorPath> actorPaths(vtkRenderer* renderer)
+{
+  std::vector<ActorPath> paths;
+  vtkPropCollection* props = renderer->GetViewProps();
+  vtkCollectionSimpleIterator it;
+  props->InitTraversal(it);
+  while (vtkProp* prop = props->GetNextProp(it))
+  {
+    if (!hasActorPaths(prop))
+    {
+      continue;
+    }
+    prop->InitPathTraversal();
+    while (vtkAssemblyPath* source = prop->GetNextPath())
+    {
+      ActorPath path;
+      if (readPath(source, path))
+      {
+        paths.push_back(std::move(path));
+      }
+    }
+  }
+  return paths;
+}
+
+} // namespace scene
+} // namespace hrt

@@ -1,0 +1,162 @@
+// Reads the results of vtkMapper::MapScalars by the rules of vtkOpenGLPolyDataMapper's
+// BuildBufferObjects, which decides what the colours belong to.
+
+#include "Rendering/Scene/ColorExtraction.h"
+
+#include "vtkFloatArray.h"
+#include "vtkImageData.h"
+#include "vtkMapper.h"
+#include "vtkPointData.h"
+#include "vtkPolyData.h"
+#include "vtkUnsignedCharArray.h"
+
+#include <algorithm>
+
+namespace hrt
+{
+namespace scene
+{
+namespace
+{
+
+enum class Attachment
+{
+  Points,
+  Cells,
+  OneTuple // the whole part has the colour of one tuple of field data
+};
+
+//------------------------------------------------------------------------------
+Attachment attachmentOf(vtkMapper* mapper, vtkPolyData* input)
+{
+  const int mode = mapper->GetScalarMode();
+  if (mode == VTK_SCALAR_MODE_USE_FIELD_DATA && mapper->GetFieldDataTupleId() > -1)
+  {
+    return Attachment::OneTuple;
+  }
+  if (mode == VTK_SCALAR_MODE_USE_POINT_FIELD_DATA)
+  {
+    return Attachment::Points;
+  }
+  const bool cells = mode == VTK_SCALAR_MODE_USE_CELL_DATA ||
+    mode == VTK_SCALAR_MODE_USE_CELL_FIELD_DATA || mode == VTK_SCALAR_MODE_USE_FIELD_DATA;
+  return cells || !input->GetPointData()->GetScalars() ? Attachment::Cells : Attachment::Points;
+}
+
+//------------------------------------------------------------------------------
+vtkIdType tuplesNeeded(Attachment attachment, vtkMapper* mapper, vtkPolyData* input)
+{
+  switch (attachment)
+  {
+    case Attachment::Points:
+      return input->GetNumberOfPoints();
+    case Attachment::Cells:
+      return input->GetNumberOfCells();
+    case Attachment::OneTuple:
+      return mapper->GetFieldDataTupleId() + 1;
+  }
+  return 0;
+}
+
+//------------------------------------------------------------------------------
+// One to four components: grey, grey and alpha, RGB, RGBA, as in a texture.
+glm::u8vec4 readColor(vtkUnsignedCharArray* colors, vtkIdType tuple)
+{
+  const int components = colors->GetNumberOfComponents();
+  const unsigned char* c = colors->GetPointer(tuple * components);
+  switch (components)
+  {
+    case 1:
+      return glm::u8vec4(c[0], c[0], c[0], 255);
+    case 2:
+      return glm::u8vec4(c[0], c[0], c[0], c[1]);
+    case 3:
+      return glm::u8vec4(c[0], c[1], c[2], 255);
+    default:
+      return glm::u8vec4(c[0], c[1], c[2], c[3]);
+  }
+}
+
+//------------------------------------------------------------------------------
+bool writeCorners(vtkUnsignedCharArray* colors, vtkMapper* mapper, vtkPolyData* input,
+  const Triangles& triangles, Geometry& geometry)
+{
+  const Attachment attachment = attachmentOf(mapper, input);
+  if (colors->GetNumberOfTuples() < tuplesNeeded(attachment, mapper, input))
+  {
+    return false;
+  }
+  geometry.colorSource = ColorSource::Corner;
+  geometry.colors.reserve(3 * triangles.size());
+  for (const SourceTriangle& triangle : triangles)
+  {
+    for (vtkIdType point : triangle.points)
+    {
+      const vtkIdType tuple = attachment == Attachment::Points ? point
+        : attachment == Attachment::Cells                      ? triangle.cell
+                                                               : mapper->GetFieldDataTupleId();
+      geometry.colors.push_back(readColor(colors, tuple));
+    }
+  }
+  return true;
+}
+
+//------------------------------------------------------------------------------
+// Scalars are interpolated before they are mapped: coordinates at the points into a table of
+// texels.
+bool writeLookup(vtkFloatArray* coordinates, vtkImageData* table, vtkPolyData* input,
+  const Triangles& triangles, Geometry& geometry)
+{
+  auto* texels = vtkUnsignedCharArray::SafeDownCast(table->GetPointData()->GetScalars());
+  const int* size = table->GetDimensions();
+  const vtkIdType count = static_cast<vtkIdType>(size[0]) * size[1];
+  if (!texels || texels->GetNumberOfTuples() < count || count == 0 ||
+    coordinates->GetNumberOfComponents() != 2 ||
+    coordinates->GetNumberOfTuples() < input->GetNumberOfPoints())
+  {
+    return false;
+  }
+  geometry.colorSource = ColorSource::Lookup;
+  geometry.lookupWidth = size[0];
+  geometry.lookupHeight = size[1];
+  geometry.lookup.reserve(static_cast<std::size_t>(count));
+  for (vtkIdType i = 0; i < count; ++i)
+  {
+    geometry.lookup.push_back(readColor(texels, i));
+  }
+  geometry.coordinates.reserve(3 * triangles.size());
+  for (const SourceTriangle& triangle : triangles)
+  {
+    for (vtkIdType point : triangle.points)
+    {
+      const float* st = coordinates->GetPointer(2 * point);
+      geometry.coordinates.emplace_back(st[0], st[1]);
+    }
+  }
+  return true;
+}
+
+} // anonymous namespace
+
+//------------------------------------------------------------------------------
+bool writeColors(
+  vtkMapper* mapper, vtkPolyData* input, const Triangles& triangles, Geometry& geometry)
+{
+  // Opacity 1: the property's opacity is multiplied in when shading, as in VTK's shaders.
+  mapper->MapScalars(input, 1.0);
+  vtkUnsignedCharArray* colors = mapper->GetColorMapColors();
+  vtkFloatArray* coordinates = mapper->GetColorCoordinates();
+  if (colors && colors->GetNumberOfTuples() > 0)
+  {
+    return writeCorners(colors, mapper, input, triangles, geometry);
+  }
+  if (coordinates && mapper->GetColorTextureMap())
+  {
+    return writeLookup(coordinates, mapper->GetColorTextureMap(), input, triangles, geometry);
+  }
+  geometry.colorSource = ColorSource::Property;
+  return true;
+}
+
+} // namespace scene
+} // namespace hrt

@@ -1,0 +1,24 @@
+// The colours of a part's triangles, as vtkMapper makes them from scalars. The mapping itself is
+// left to the mapper, whose many modes are thereby all supported; only where its result is stored
+// and what it is attached to is read here.
+#pragma once
+
+#include "Rendering/Core/Snapshot.h"
+#include "Rendering/Scene/TriangleExtraction.h"
+
+class vtkMapper;
+class vtkPolyData;
+
+namespace hrt
+{
+namespace scene
+{
+
+// Lets the mapper map its scalars and fills colorSource and the colours, or the coordinates and the
+// look-up table, of the geometry. False when the mapper's colours do not cover the input, in which
+// case the colour is the property's.
+bool writeColors(
+  vtkMapper* mapper, vtkPolyData* input, const Triangles& triangles, Geometry& geometry);
+
+} // namespace scene
+} // namespace hrt

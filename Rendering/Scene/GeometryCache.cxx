@@ -1,0 +1,136 @@
+// See GeometryCache.h.
+
+#include "Rendering/Scene/GeometryCache.h"
+
+#include "Rendering/Scene/ColorExtraction.h"
+
+#include "vtkMapper.h"
+#include "vtkPolyData.h"
+
+#include <atomic>
+
+namespace hrt
+{
+namespace scene
+{
+namespace
+{
+
+//------------------------------------------------------------------------------
+std::uint64_t nextVersion()
+{
+  static std::atomic<std::uint64_t> last{ 0 };
+  return ++last;
+}
+
+//------------------------------------------------------------------------------
+// All but the version; the bounds follow from the positions.
+bool sameContent(const Geometry& a, const Geometry& b)
+{
+  return a.origin == b.origin && a.colorSource == b.colorSource && a.lookupWidth == b.lookupWidth &&
+    a.lookupHeight == b.lookupHeight && a.cellIds == b.cellIds && a.positions == b.positions &&
+    a.normals == b.normals && a.colors == b.colors && a.coordinates == b.coordinates &&
+    a.lookup == b.lookup;
+}
+
+//------------------------------------------------------------------------------
+bool sameProblems(const Extraction& a, const Extraction& b)
+{
+  return a.report == b.report && a.colorsComplete == b.colorsComplete;
+}
+
+} // anonymous namespace
+
+//------------------------------------------------------------------------------
+GeometryCache::Signature GeometryCache::signatureOf(const Source& source)
+{
+  // A mapper's modification time includes that of its look-up table.
+  return Signature(
+    source.input, source.input->GetMTime(), source.mapper, source.mapper->GetMTime(), source.flat);
+}
+
+//------------------------------------------------------------------------------
+ExtractionPointer GeometryCache::extract(const Source& source, const Extraction* before)
+{
+  auto geometry = std::make_shared<Geometry>();
+  auto extraction = std::make_shared<Extraction>();
+  TriangleReport& report = extraction->report;
+  const Points points = readPoints(source.input);
+  Triangles triangles = triangulate(source.input, points, report);
+  writePositions(triangles, points, *geometry, report);
+  writeNormals(source.input, source.flat, triangles, *geometry, report);
+  extraction->colorsComplete = writeColors(source.mapper, source.input, triangles, *geometry);
+
+  if (before && sameContent(*before->geometry, *geometry))
+  {
+    extraction->geometry = before->geometry;
+  }
+  else
+  {
+    geometry->version = nextVersion();
+    extraction->geometry = geometry;
+  }
+  return extraction;
+}
+
+//------------------------------------------------------------------------------
+ExtractionPointer GeometryCache::get(std::uint64_t part, const Source& source, bool& fresh)
+{
+  Record& record = this->Records[part];
+  if (record.actor != source.actor)
+  {
+    record = Record();
+    record.actor = source.actor;
+  }
+  record.used = true;
+  fresh = false;
+  Signature signature = signatureOf(source);
+  if (record.extraction && record.signature == signature)
+  {
+    return record.extraction;
+  }
+  const auto shared = this->Shared.find(signature);
+  ExtractionPointer extraction =
+    shared != this->Shared.end() ? shared->second : this->extract(source, record.extraction.get());
+  fresh = shared == this->Shared.end() &&
+    (!record.extraction || record.extraction->geometry != extraction->geometry ||
+      !sameProblems(*record.extraction, *extraction));
+  // Mapping scalars may have modified the mapper or its table; what counts is the state after it.
+  record.signature = signatureOf(source);
+  record.extraction = extraction;
+  this->Shared[record.signature] = extraction;
+  return extraction;
+}
+
+//------------------------------------------------------------------------------
+void GeometryCache::keep(std::uint64_t part)
+{
+  const auto record = this->Records.find(part);
+  if (record != this->Records.end())
+  {
+    record->second.used = true;
+  }
+}
+
+//------------------------------------------------------------------------------
+void GeometryCache::endFrame()
+{
+  this->Shared.clear();
+  for (auto it = this->Records.begin(); it != this->Records.end();)
+  {
+    if (!it->second.used)
+    {
+      it = this->Records.erase(it);
+      continue;
+    }
+    it->second.used = false;
+    if (it->second.extraction)
+    {
+      this->Shared[it->second.signature] = it->second.extraction;
+    }
+    ++it;
+  }
+}
+
+} // namespace scene
+} // namespace hrt

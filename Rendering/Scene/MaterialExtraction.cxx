@@ -1,0 +1,87 @@
+// The coefficients and colours are copied as they are; the shading source multiplies them.
+
+#include "Rendering/Scene/MaterialExtraction.h"
+
+#include "Rendering/Scene/VTKConversions.h"
+#include "Rendering/Scene/vtkHybridMaterial.h"
+
+#include "vtkActor.h"
+#include "vtkInformation.h"
+#include "vtkInformationDoubleKey.h"
+#include "vtkProperty.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace hrt
+{
+namespace scene
+{
+namespace
+{
+
+//------------------------------------------------------------------------------
+double nearestValue(const std::vector<vtkProp*>& path, vtkInformationDoubleKey* key)
+{
+  for (auto prop = path.rbegin(); prop != path.rend(); ++prop)
+  {
+    vtkInformation* keys = (*prop)->GetPropertyKeys();
+    if (keys && keys->Has(key))
+    {
+      return keys->Get(key);
+    }
+  }
+  return 0.0;
+}
+
+//------------------------------------------------------------------------------
+PhongTerms phongTerms(vtkProperty* property)
+{
+  PhongTerms terms;
+  terms.ambientColor = toColor(property->GetAmbientColor());
+  terms.ambient = static_cast<float>(property->GetAmbient());
+  terms.diffuseColor = toColor(property->GetDiffuseColor());
+  terms.diffuse = static_cast<float>(property->GetDiffuse());
+  terms.specularColor = toColor(property->GetSpecularColor());
+  terms.specular = static_cast<float>(property->GetSpecular());
+  terms.specularPower = static_cast<float>(property->GetSpecularPower());
+  terms.opacity = static_cast<float>(property->GetOpacity());
+  return terms;
+}
+
+} // anonymous namespace
+
+//------------------------------------------------------------------------------
+RayKeys readRayKeys(const std::vector<vtkProp*>& path)
+{
+  // The keys are open to everyone; what vtkHybridMaterial would have refused is no mirror, no
+  // glass.
+  RayKeys keys;
+  const double reflectance = nearestValue(path, vtkHybridMaterial::REFLECTANCE());
+  keys.reflectance = reflectance >= 0.0 && reflectance <= 1.0 ? reflectance : 0.0;
+  const double index = nearestValue(path, vtkHybridMaterial::INDEX_OF_REFRACTION());
+  keys.indexOfRefraction = index >= 1.0 && std::isfinite(index) ? index : 0.0;
+  return keys;
+}
+
+//------------------------------------------------------------------------------
+Material extractMaterial(vtkActor* actor, const RayKeys& keys, ColorSource colorSource)
+{
+  vtkProperty* property = actor->GetProperty();
+  Material material;
+  material.front = phongTerms(property);
+  // VTK's shader forgets the backface property altogether, its specular terms included, as soon as
+  // the colours come from scalars.
+  vtkProperty* backface =
+    colorSource == ColorSource::Property ? actor->GetBackfaceProperty() : nullptr;
+  material.back = backface ? phongTerms(backface) : material.front;
+  material.lit = property->GetLighting();
+  material.cullFront = property->GetFrontfaceCulling() != 0;
+  material.cullBack = property->GetBackfaceCulling() != 0;
+  material.reflectance = static_cast<float>(keys.reflectance);
+  material.indexOfRefraction = static_cast<float>(keys.indexOfRefraction);
+  return material;
+}
+
+} // namespace scene
+} // namespace hrt

@@ -1,0 +1,30 @@
+// From vtkProperty, the actor's backface property and the keys of vtkHybridMaterial to an
+// hrt::Material.
+#pragma once
+
+#include "Rendering/Core/Snapshot.h"
+
+#include <vector>
+
+class vtkActor;
+class vtkProp;
+
+namespace hrt
+{
+namespace scene
+{
+
+// Mirror and glass keys of the actor, else of the nearest assembly above it that has them.
+struct RayKeys
+{
+  double reflectance = 0.0;
+  double indexOfRefraction = 0.0;
+};
+
+// `path` leads from the renderer's prop to the actor.
+RayKeys readRayKeys(const std::vector<vtkProp*>& path);
+
+Material extractMaterial(vtkActor* actor, const RayKeys& keys, ColorSource colorSource);
+
+} // namespace scene
+} // namespace hrt

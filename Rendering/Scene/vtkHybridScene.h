@@ -1,0 +1,98 @@
+/**
+ * @class   vtkHybridScene
+ * @brief   from a vtkRenderer to the snapshot that the ray tracer draws
+ *
+ * vtkHybridScene reads a renderer's props, lights, camera and background into an hrt::Snapshot,
+ * which holds no VTK types, and tells what differs from the snapshot before. All view props are
+ * read, not only those that survived the renderer's cullers: what is outside of the picture still
+ * casts shadows into it and is seen in mirrors.
+ *
+ * Triangles are extracted again only when the data or the mapper's colouring changed; a changed
+ * matrix, property, light or camera leaves the geometry's pointers as they are.
+ *
+ * Bad input is refused at this door: triangles that name missing points, have coordinates that are
+ * not finite or too large, or have no area; parts whose matrix cannot be inverted. Each part is
+ * warned about once, the sums are in hrt::Snapshot::refusals.
+ *
+ * @sa
+ * vtkHybridRayTracingPass vtkHybridMaterial
+ */
+
+#ifndef vtkHybridScene_h
+#define vtkHybridScene_h
+
+#include "vtkHybridRenderingSceneModule.h" // For export macro
+#include "vtkHybridVersion.h"              // For the ABI namespace
+#include "vtkObject.h"
+
+#include <cstddef> // For std::size_t
+#include <memory>  // For std::shared_ptr
+
+namespace hrt
+{
+struct Changes;
+struct Snapshot;
+}
+
+VTK_ABI_NAMESPACE_BEGIN
+
+class vtkProp;
+class vtkRenderer;
+
+class VTKHYBRIDRENDERINGSCENE_EXPORT vtkHybridScene : public vtkObject
+{
+public:
+  static vtkHybridScene* New();
+  vtkTypeMacro(vtkHybridScene, vtkObject);
+  void PrintSelf(ostream& os, vtkIndent indent) override;
+
+  /**
+   * Read the renderer. The pipelines of the mappers are brought up to date, as rendering them
+   * would. The lights' geometry must be up to date before (vtkRenderer::UpdateLightGeometry). When
+   * another renderer than the last time is given, everything counts as changed.
+   */
+  void Update(vtkRenderer* renderer);
+
+  /**
+   * The scene as of the last Update; never null, empty before the first.
+   */
+  std::shared_ptr<const hrt::Snapshot> GetSnapshot() const;
+
+  /**
+   * What differs between the last two snapshots.
+   */
+  const hrt::Changes& GetChanges() const;
+
+  /**
+   * The actor of a part of the snapshot (an index into hrt::Snapshot::parts). Null when there is no
+   * such part or the actor has been deleted since.
+   */
+  vtkProp* GetProp(std::size_t part) const;
+
+  /**
+   * Whether the tracer draws all that VTK would draw for this prop: an actor, or an assembly with
+   * every visible part of it. The prop is then to be skipped when VTK draws the others. Hidden and
+   * unknown props are not drawn by the tracer.
+   */
+  bool IsDrawnByTracer(vtkProp* prop) const;
+
+  /**
+   * Why VTK has to draw the prop itself: a short English phrase for statistics. Empty when the
+   * tracer draws it or the prop is hidden or not an actor, nor an assembly of actors.
+   */
+  const char* GetReasonLeftToVTK(vtkProp* prop) const;
+
+protected:
+  vtkHybridScene();
+  ~vtkHybridScene() override;
+
+private:
+  vtkHybridScene(const vtkHybridScene&) = delete;
+  void operator=(const vtkHybridScene&) = delete;
+
+  class vtkInternals;
+  std::unique_ptr<vtkInternals> Internals;
+};
+
+VTK_ABI_NAMESPACE_END
+#endif

@@ -1,0 +1,286 @@
+// The Embree structure against a loop over all triangles: same triangle, same t, u, v, bit by bit.
+#include "Rendering/Core/Structures/EmbreeStructure.h"
+#include "Scenes.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <stdexcept>
+
+namespace
+{
+
+using namespace hrt;
+using scenes::Random;
+
+std::shared_ptr<Geometry> soup(Random& random, int count, double size)
+{
+  std::vector<glm::vec3> positions;
+  for (int i = 0; i < count; ++i)
+  {
+    const glm::dvec3 centre = random.inBox(1.0);
+    for (int corner = 0; corner < 3; ++corner)
+    {
+      positions.push_back(glm::vec3(centre + random.inBox(size)));
+    }
+  }
+  return scenes::makeGeometry(positions);
+}
+
+// Three placements of one mesh: turned and stretched, mirrored, and shrunk, around `centre`.
+Snapshot placedTori(const glm::dvec3& centre)
+{
+  const auto mesh = scenes::torus(40, 20, 1.0, 0.4);
+  const glm::dmat4 at = glm::translate(glm::dmat4(1.0), centre);
+  Snapshot s;
+  scenes::addPart(s, mesh,
+    at * glm::rotate(glm::dmat4(1.0), 0.7, glm::dvec3(1, 2, 3)) *
+      glm::scale(glm::dmat4(1.0), { 1.0, 2.0, 0.5 }));
+  scenes::addPart(s, scenes::makeGeometry({}));
+  scenes::addPart(s, mesh,
+    glm::translate(at, glm::dvec3(0.5, 0.2, -0.4)) *
+      glm::scale(glm::dmat4(1.0), { -1.0, 1.0, 1.0 }));
+  scenes::addPart(s, mesh,
+    glm::translate(at, glm::dvec3(-1, 0, 0)) * glm::scale(glm::dmat4(1.0), glm::dvec3(0.01)));
+  s.origin = centre;
+  return s;
+}
+
+bool same(const Hit& a, const Hit& b)
+{
+  return a.triangle == b.triangle && a.t == b.t && a.u == b.u && a.v == b.v;
+}
+
+glm::dvec3 randomCorner(const Snapshot& s, Random& random)
+{
+  const TriangleId id = static_cast<TriangleId>(random.below(s.triangleCount));
+  const Part& part = s.parts[s.partOf(id)];
+  const Corners c =
+    sceneCorners(*part.geometry, positionsToScene(part, s.origin), id - part.firstTriangle);
+  return random.below(2) ? c.a : 0.5 * (c.a + c.b); // a vertex, or the middle of an edge
+}
+
+// Half of the rays at random, half at vertices and edges, where single precision fails.
+Ray randomRay(const Snapshot& s, Random& random, int i)
+{
+  Ray ray;
+  ray.origin = random.inBox(3.0);
+  ray.direction = i % 2 ? randomCorner(s, random) - ray.origin : random.direction();
+  if (i % 3 == 0)
+  {
+    ray.tMaximum = random(0.0, 4.0);
+  }
+  if (i % 5 == 0)
+  {
+    ray.originTriangle = static_cast<TriangleId>(random.below(s.triangleCount));
+  }
+  return ray;
+}
+
+void expectEqualToBruteForce(const Snapshot& s, int rays, const char* configuration = "")
+{
+  EmbreeStructure embree{ configuration };
+  scenes::BruteForce reference;
+  embree.update(s);
+  reference.update(s);
+  Random random(6);
+  int hits = 0, misses = 0, wrong = 0, wrongOcclusion = 0;
+  for (int i = 0; i < rays; ++i)
+  {
+    const Ray ray = randomRay(s, random, i);
+    const Hit expected = reference.intersect(ray);
+    ++(expected.valid() ? hits : misses);
+    wrong += !same(embree.intersect(ray), expected);
+    wrongOcclusion += embree.occluded(ray) != reference.occluded(ray);
+  }
+  EXPECT_EQ(wrong, 0);
+  EXPECT_EQ(wrongOcclusion, 0);
+  EXPECT_GT(hits, rays / 20);
+  EXPECT_GT(misses, rays / 20);
+}
+
+TEST(EmbreeStructure, EqualsBruteForceOnRandomTriangles)
+{
+  Random random(7);
+  Snapshot s;
+  scenes::addPart(s, soup(random, 1000, 0.2));
+  scenes::addPart(s, soup(random, 1000, 0.01), glm::rotate(glm::dmat4(1.0), 1.0, { 0, 1, 0 }));
+  expectEqualToBruteForce(s, 8000);
+}
+
+TEST(EmbreeStructure, EqualsBruteForceOnPlacedMeshes)
+{
+  expectEqualToBruteForce(placedTori({ 0, 0, 0 }), 6000);
+}
+
+TEST(EmbreeStructure, EqualsBruteForceFarFromTheOrigin)
+{
+  expectEqualToBruteForce(placedTori({ 148376, 1234, -223423 }), 6000);
+}
+
+TEST(EmbreeStructure, InstructionSetDoesNotShow)
+{
+  expectEqualToBruteForce(placedTori({ 0, 0, 0 }), 2000, "isa=sse2");
+}
+
+// From inside a closed mesh every ray must hit, those at vertices and edges too.
+TEST(EmbreeStructure, NothingLeaksOutOfAClosedMesh)
+{
+  for (const glm::dvec3& centre : { glm::dvec3(0.0), glm::dvec3(148376, 1234, -223423) })
+  {
+    Snapshot s;
+    scenes::addPart(s, scenes::sphere(200, 100), glm::translate(glm::dmat4(1.0), centre));
+    s.origin = centre;
+    EmbreeStructure embree;
+    embree.update(s);
+    Random random(8);
+    int leaks = 0;
+    for (int i = 0; i < 400000; ++i)
+    {
+      Ray ray;
+      ray.origin = random.inBox(0.5);
+      ray.direction = i % 4 ? randomCorner(s, random) - ray.origin : random.direction();
+      leaks += !embree.intersect(ray).valid();
+    }
+    EXPECT_EQ(leaks, 0);
+  }
+}
+
+TEST(EmbreeStructure, EqualHitsGiveTheSmallestNumber)
+{
+  const auto quad = scenes::quad({ -1, -1, 0 }, { 1, -1, 0 }, { 1, 1, 0 }, { -1, 1, 0 });
+  Snapshot s;
+  for (int copy = 0; copy < 9; ++copy)
+  {
+    scenes::addPart(s, quad);
+  }
+  EmbreeStructure embree;
+  embree.update(s);
+  Ray ray;
+  ray.origin = { 0.5, -0.5, 3 };
+  EXPECT_EQ(embree.intersect(ray).triangle, 0u);
+  EXPECT_EQ(embree.intersect(ray).t, 3.0);
+  ray.originTriangle = 0; // the next copy is as near
+  EXPECT_EQ(embree.intersect(ray).triangle, 2u);
+  ray.origin = { 0.5, 0.5, 3 }; // on the diagonal, which both triangles of each copy share
+  ray.originTriangle = kNoTriangle;
+  EXPECT_EQ(embree.intersect(ray).triangle, 0u);
+}
+
+TEST(EmbreeStructure, PartsTakePartAsTheyAreMarked)
+{
+  const auto quad = scenes::quad({ -1, -1, 0 }, { 1, -1, 0 }, { 1, 1, 0 }, { -1, 1, 0 });
+  Snapshot s;
+  scenes::addPart(s, quad).visibleToRays = false;
+  scenes::addPart(s, quad, glm::translate(glm::dmat4(1.0), { 0, 0, -1 })).castsShadow = false;
+  EmbreeStructure embree;
+  embree.update(s);
+  Ray ray;
+  ray.origin = { 0.5, -0.5, 3 };
+  EXPECT_EQ(embree.intersect(ray).triangle, 2u);
+  EXPECT_TRUE(embree.occluded(ray));
+  ray.originTriangle = 0; // without the caster nothing casts
+  EXPECT_FALSE(embree.occluded(ray));
+}
+
+TEST(EmbreeStructure, EmptyScenesAndUnusableRaysAreMisses)
+{
+  EmbreeStructure embree;
+  Ray ray;
+  EXPECT_FALSE(embree.intersect(ray).valid()); // before the first update
+  Snapshot s;
+  EXPECT_FALSE(embree.update(s).partsRebuilt);
+  EXPECT_FALSE(embree.intersect(ray).valid());
+  EXPECT_FALSE(embree.occluded(ray));
+  scenes::addPart(s, scenes::makeGeometry({}));
+  EXPECT_EQ(embree.update(s).built, 0u);
+  EXPECT_FALSE(embree.intersect(ray).valid());
+
+  scenes::addPart(s, scenes::sphere(16, 8));
+  embree.update(s);
+  ASSERT_TRUE(embree.intersect(ray).valid());
+  for (double bad : { std::nan(""), std::numeric_limits<double>::infinity() })
+  {
+    Ray broken = ray;
+    broken.origin.y = bad;
+    EXPECT_FALSE(embree.intersect(broken).valid());
+    broken = ray;
+    broken.direction.x = bad;
+    EXPECT_FALSE(embree.intersect(broken).valid());
+    EXPECT_FALSE(embree.occluded(broken));
+  }
+  ray.direction = glm::dvec3(0.0);
+  EXPECT_FALSE(embree.intersect(ray).valid());
+}
+
+TEST(EmbreeStructure, BuildsOnlyWhatIsNew)
+{
+  const auto ball = scenes::sphere(16, 8), ring = scenes::torus(16, 8, 1, 0.3);
+  Snapshot s;
+  scenes::addPart(s, ball);
+  scenes::addPart(s, ball, glm::translate(glm::dmat4(1.0), { 5, 0, 0 }));
+  scenes::addPart(s, ring);
+  EmbreeStructure embree;
+  const auto expectReport = [&](std::uint64_t built, std::uint64_t reused, bool parts) {
+    const StructureReport report = embree.update(s);
+    EXPECT_EQ(report.built, built);
+    EXPECT_EQ(report.reused, reused);
+    EXPECT_EQ(report.refitted, 0u);
+    EXPECT_EQ(report.partsRebuilt, parts);
+  };
+  expectReport(2, 0, true);  // two geometries, three parts
+  expectReport(0, 2, false); // nothing new
+  s.parts[1].localToWorld[3][0] = 7;
+  expectReport(0, 2, true); // a part moved
+  s.parts[2].geometry = scenes::torus(16, 8, 1, 0.2);
+  expectReport(1, 1, true); // a mesh changed
+  s.parts.resize(2);
+  expectReport(0, 1, true); // a part left
+  Ray ray;
+  ray.origin = { 7.1, 0.1, 3 };
+  EXPECT_TRUE(embree.intersect(ray).valid()); // where the moved part is now
+}
+
+TEST(EmbreeStructure, LeavesFloatingPointModesAlone)
+{
+  // Flush-to-zero would turn the smallest number's half, and unequal products, into zero.
+  Snapshot s;
+  scenes::addPart(s, scenes::sphere(64, 32));
+  EmbreeStructure embree;
+  embree.update(s);
+  embree.intersect(Ray());
+  volatile double smallest = std::numeric_limits<double>::min();
+  EXPECT_GT(smallest / 2, 0.0);
+}
+
+std::string errorOf(const std::function<void()>& action)
+{
+  try
+  {
+    action();
+  }
+  catch (const std::runtime_error& error)
+  {
+    return error.what();
+  }
+  return "no error";
+}
+
+TEST(EmbreeStructure, ErrorsAreThrownWithEmbreesWords)
+{
+  EXPECT_EQ(errorOf([] { EmbreeStructure embree("threads=many"); }),
+    "Embree: no device (unknown error)");
+  // A hierarchy of a kind that does not exist: the device is made, the build fails.
+  EmbreeStructure embree("object_accel=abacus");
+  Snapshot s;
+  scenes::addPart(s, scenes::sphere(16, 8));
+  const std::string error = errorOf([&] { embree.update(s); });
+  EXPECT_NE(error.find("Embree: building a geometry's hierarchy failed"), std::string::npos)
+    << error;
+  EXPECT_NE(error.find("abacus"), std::string::npos) << error;
+  EXPECT_FALSE(embree.intersect(Ray()).valid()); // still usable, as before the update
+}
+
+} // namespace

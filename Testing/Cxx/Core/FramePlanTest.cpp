@@ -1,0 +1,314 @@
+// The frame plan, rule by rule: which stages run after which change, and why the others do not.
+#include "Rendering/Core/Plan/FramePlan.h"
+#include "Scenes.h"
+
+#include <gtest/gtest.h>
+
+#include <functional>
+
+namespace
+{
+
+using namespace hrt;
+
+// A scene with everything in view, all caches valid and nothing changed; each test departs from it.
+struct Frame
+{
+  Facts facts;
+  Settings settings;
+  SettingsChanges settingsChanges;
+  Changes changes;
+  Caches caches;
+
+  Frame()
+  {
+    facts.triangles = 100;
+    facts.anyPartInView = facts.mirrorInView = facts.anyCaster = true;
+    facts.lightCanCast = { true, true };
+    changes.first = changes.camera = changes.geometry = changes.transforms = false;
+    changes.materials = changes.culling = changes.lightColors = changes.background = false;
+    changes.lightCount = false;
+    changes.lightMoved = { false, false };
+    caches.geometryUploaded = caches.visibility = caches.primaryImage = true;
+    caches.secondaryImage = caches.structure = true;
+    caches.shadowMaps = { true, true };
+  }
+
+  FramePlan plan() const
+  {
+    return planFrame(facts, settings, settingsChanges, changes, caches);
+  }
+};
+
+// The stages that run, by initials: Upload, shadow maps 0 and 1, Visibility, Primary, Read-back,
+// sTructure, secondarY rays, Blit.
+std::string running(const FramePlan& plan)
+{
+  std::string names;
+  const auto add = [&](bool run, const char* name) { names += run ? name : ""; };
+  add(plan[Stage::GeometryUpload].run, "U");
+  for (std::size_t i = 0; i < plan.shadowMaps.size(); ++i)
+  {
+    add(plan.shadowMaps[i].run, i == 0 ? "0" : "1");
+  }
+  add(plan[Stage::Visibility].run, "V");
+  add(plan[Stage::PrimaryShading].run, "P");
+  add(plan[Stage::ReadBack].run, "R");
+  add(plan[Stage::Structure].run, "T");
+  add(plan[Stage::SecondaryRays].run, "Y");
+  add(plan[Stage::Blit].run, "B");
+  return names;
+}
+
+TEST(FramePlan, StillFrameOnlyBlits)
+{
+  const FramePlan plan = Frame().plan();
+  EXPECT_EQ(running(plan), "B");
+  EXPECT_STREQ(plan[Stage::Blit].reason, "nothing changed since the last frame");
+  EXPECT_TRUE(plan.useSecondaryImage);
+}
+
+TEST(FramePlan, FirstFrameRunsEverything)
+{
+  Frame frame;
+  frame.changes = Changes();
+  frame.changes.lightMoved = { true, true };
+  frame.caches = Caches();
+  EXPECT_EQ(running(frame.plan()), "U01VPRTYB");
+}
+
+TEST(FramePlan, RunsWhatAChangeNeeds)
+{
+  const struct
+  {
+    const char* what;
+    const char* stages;
+    std::function<void(Frame&)> change;
+  } table[] = {
+    { "geometry", "U01VPRTYB", [](Frame& f) { f.changes.geometry = true; } },
+    { "actor moved", "01VPRTYB", [](Frame& f) { f.changes.transforms = true; } },
+    { "camera", "VPRYB", [](Frame& f) { f.changes.camera = true; } },
+    { "material", "PRYB", [](Frame& f) { f.changes.materials = true; } },
+    { "culling", "VPRYB",
+      [](Frame& f) { f.changes.materials = f.changes.culling = true; } },
+    { "light colour", "PRYB", [](Frame& f) { f.changes.lightColors = true; } },
+    { "light 1 moved", "1PRYB", [](Frame& f) { f.changes.lightMoved[1] = true; } },
+    { "light 1 moved, no mirror", "1PB",
+      [](Frame& f) {
+        f.changes.lightMoved[1] = true;
+        f.facts.mirrorInView = false;
+      } },
+    { "lights replaced", "01PRYB", [](Frame& f) { f.changes.lightCount = true; } },
+    { "background", "RYB", [](Frame& f) { f.changes.background = true; } },
+    { "background, no mirror", "B",
+      [](Frame& f) {
+        f.changes.background = true;
+        f.facts.mirrorInView = false;
+      } },
+    { "visibility setting", "VPRYB", [](Frame& f) { f.settingsChanges.visibility = true; } },
+    { "shadow setting", "PRYB", [](Frame& f) { f.settingsChanges.shading = true; } },
+    { "depth setting", "RYB", [](Frame& f) { f.settingsChanges.secondary = true; } },
+    { "no upload yet", "UB", [](Frame& f) { f.caches.geometryUploaded = false; } },
+    { "no map yet", "0PB", [](Frame& f) { f.caches.shadowMaps[0] = false; } },
+    { "caches of fewer lights", "1PB", [](Frame& f) { f.caches.shadowMaps.resize(1); } },
+    { "no buffer yet", "VPRYB", [](Frame& f) { f.caches.visibility = false; } },
+    { "no primary image", "PB", [](Frame& f) { f.caches.primaryImage = false; } },
+    { "no secondary image", "RYB", [](Frame& f) { f.caches.secondaryImage = false; } },
+    { "unneeded structure", "B", [](Frame& f) { f.caches.structure = false; } },
+    { "no structure", "RTYB",
+      [](Frame& f) { f.caches.structure = f.caches.secondaryImage = false; } },
+    { "shadows off", "VPRTYB",
+      [](Frame& f) {
+        f.settings.shadows = ShadowMode::Off;
+        f.changes.transforms = true;
+      } },
+    { "no caster", "VPRTYB",
+      [](Frame& f) {
+        f.facts.anyCaster = false;
+        f.changes.transforms = true;
+      } },
+    { "light at the eye", "1VPRTYB",
+      [](Frame& f) {
+        f.facts.lightCanCast[0] = false;
+        f.changes.transforms = true;
+      } },
+    { "camera, no mirror", "VPB",
+      [](Frame& f) {
+        f.facts.mirrorInView = false;
+        f.changes.camera = true;
+      } },
+    { "glass only", "VPRYB",
+      [](Frame& f) {
+        f.facts.mirrorInView = false;
+        f.facts.glassInView = true;
+        f.changes.camera = true;
+      } },
+    { "nothing in view", "",
+      [](Frame& f) {
+        f.facts.anyPartInView = f.facts.mirrorInView = false;
+        f.changes.geometry = f.changes.camera = true;
+      } },
+    { "empty scene", "",
+      [](Frame& f) {
+        f.facts = Facts();
+        f.changes = Changes();
+      } },
+  };
+  for (const auto& row : table)
+  {
+    Frame frame;
+    row.change(frame);
+    EXPECT_EQ(running(frame.plan()), row.stages) << row.what;
+  }
+}
+
+TEST(FramePlan, SecondaryRaysFollowTheSettings)
+{
+  const struct
+  {
+    bool mirror, glass, reflections, refractions;
+    int depth;
+    bool used;
+  } table[] = {
+    { true, false, true, true, 3, true },
+    { true, false, false, true, 3, false },
+    { false, true, true, true, 1, true },
+    { false, true, true, false, 3, false },
+    { false, true, false, true, 3, true },
+    { true, true, false, false, 3, false },
+    { true, true, true, true, 0, false },
+    { false, false, true, true, 3, false },
+  };
+  for (const auto& row : table)
+  {
+    Frame frame;
+    frame.changes.geometry = true;
+    frame.facts.mirrorInView = row.mirror;
+    frame.facts.glassInView = row.glass;
+    frame.settings.reflections = row.reflections;
+    frame.settings.refractions = row.refractions;
+    frame.settings.maximumDepth = row.depth;
+    const FramePlan plan = frame.plan();
+    EXPECT_EQ(plan.useSecondaryImage, row.used);
+    EXPECT_EQ(plan[Stage::Structure].run, row.used);
+    EXPECT_EQ(plan[Stage::ReadBack].run, row.used);
+    EXPECT_EQ(plan[Stage::SecondaryRays].run, row.used);
+  }
+}
+
+TEST(FramePlan, EveryStageHasANameAndAReason)
+{
+  Frame moved, empty;
+  moved.changes.transforms = true;
+  empty.facts = Facts();
+  for (const FramePlan& plan : { Frame().plan(), moved.plan(), empty.plan() })
+  {
+    for (std::size_t i = 0; i < kStageCount; ++i)
+    {
+      EXPECT_STRNE(plan.stages[i].reason, "") << i;
+      EXPECT_STRNE(stageName(static_cast<Stage>(i)), "") << i;
+    }
+    for (const StageDecision& map : plan.shadowMaps)
+    {
+      EXPECT_STRNE(map.reason, "");
+    }
+  }
+  EXPECT_STREQ(stageName(Stage::SecondaryRays), "secondary_rays");
+  EXPECT_STREQ(moved.plan()[Stage::Structure].reason, "an actor moved");
+}
+
+TEST(FramePlan, SkippedStagesGoStale)
+{
+  // A part moves while no mirror is in view; in the next frame the mirror appears.
+  Frame frame;
+  frame.facts.mirrorInView = false;
+  frame.changes.transforms = true;
+  FramePlan plan = frame.plan();
+  EXPECT_FALSE(plan[Stage::Structure].run);
+  frame.caches = cachesAfter(plan, {}, frame.changes, frame.caches);
+  EXPECT_TRUE(frame.caches.visibility && frame.caches.primaryImage);
+  EXPECT_FALSE(frame.caches.structure || frame.caches.secondaryImage);
+
+  frame.facts.mirrorInView = true;
+  frame.changes.transforms = false;
+  frame.changes.camera = true;
+  plan = frame.plan();
+  EXPECT_TRUE(plan[Stage::Structure].run);
+  EXPECT_STREQ(plan[Stage::Structure].reason, "no ray structure yet");
+  frame.caches = cachesAfter(plan, {}, frame.changes, frame.caches);
+  EXPECT_TRUE(frame.caches.structure && frame.caches.secondaryImage);
+  EXPECT_TRUE(frame.caches.geometryUploaded);
+
+  frame.changes.camera = false;
+  EXPECT_EQ(running(frame.plan()), "B");
+}
+
+TEST(FramePlan, ShadowMapsGoStaleWhileShadowsAreOff)
+{
+  Frame frame;
+  frame.settings.shadows = ShadowMode::Off;
+  frame.changes.lightMoved[1] = true;
+  frame.caches = cachesAfter(frame.plan(), {}, frame.changes, frame.caches);
+  EXPECT_EQ(frame.caches.shadowMaps, std::vector<bool>({ true, false }));
+  frame.changes.lightMoved[1] = false;
+  frame.settings.shadows = ShadowMode::ShadowMaps;
+  frame.settingsChanges.shading = true;
+  EXPECT_EQ(running(frame.plan()), "1PRYB");
+}
+
+TEST(SettingsChanges, NameWhatTheyOutdate)
+{
+  const auto compare = [](const std::function<void(Settings&)>& change) {
+    Settings now;
+    change(now);
+    const SettingsChanges c = compareSettings(Settings(), now);
+    return std::string(c.visibility ? "V" : "") + (c.shading ? "S" : "") + (c.secondary ? "R" : "");
+  };
+  EXPECT_EQ(compare([](Settings&) {}), "");
+  EXPECT_EQ(compare([](Settings& s) { s.visibility = Visibility::DirectRendering; }), "V");
+  EXPECT_EQ(compare([](Settings& s) { s.shadows = ShadowMode::Off; }), "S");
+  EXPECT_EQ(compare([](Settings& s) { s.shadowMapResolution = 64; }), "S");
+  EXPECT_EQ(compare([](Settings& s) { s.reflections = false; }), "R");
+  EXPECT_EQ(compare([](Settings& s) { s.refractions = false; }), "R");
+  EXPECT_EQ(compare([](Settings& s) { s.maximumDepth = 7; }), "R");
+}
+
+TEST(GatherFacts, SeesWhatIsInTheFrustum)
+{
+  const auto ball = scenes::sphere(8, 4);
+  const auto at = [](double x, double y, double z) {
+    return glm::translate(glm::dmat4(1.0), glm::dvec3(x, y, z));
+  };
+  const auto facts = [&](const glm::dmat4& place, bool visible) {
+    Snapshot s;
+    s.camera = scenes::perspective({ 0, 0, 10 }, { 0, 0, 0 }, 64, 64, 40.0);
+    Part& part = scenes::addPart(s, ball, place);
+    part.visibleToCamera = visible;
+    part.material.reflectance = 0.5f;
+    return gatherFacts(s);
+  };
+  EXPECT_TRUE(facts(at(0, 0, 0), true).mirrorInView);
+  EXPECT_TRUE(facts(at(4, 0, 0), true).anyPartInView); // cut by the frustum's side, 3.64 wide
+  EXPECT_FALSE(facts(at(6, 0, 0), true).anyPartInView);
+  EXPECT_FALSE(facts(at(0, -6, 0), true).anyPartInView);
+  EXPECT_FALSE(facts(at(0, 0, 12), true).anyPartInView);   // behind the camera
+  EXPECT_FALSE(facts(at(0, 0, -100), true).anyPartInView); // beyond the far plane
+  EXPECT_FALSE(facts(at(0, 0, 0), false).anyPartInView);
+  EXPECT_FALSE(facts(at(6, 0, 0), true).mirrorInView);
+  EXPECT_FALSE(facts(at(0, 0, 0), true).glassInView);
+  EXPECT_TRUE(facts(at(6, 0, 0), true).anyCaster); // out of view still casts
+}
+
+TEST(GatherFacts, PositionalHeadlightsCastNoVisibleShadow)
+{
+  Snapshot s;
+  s.lights.resize(4);
+  s.lights[0].isHeadlight = true;
+  s.lights[0].kind = Light::Kind::Positional;
+  s.lights[1].isHeadlight = true;
+  s.lights[2].kind = Light::Kind::Positional;
+  EXPECT_EQ(gatherFacts(s).lightCanCast, std::vector<bool>({ false, true, true, true }));
+  EXPECT_FALSE(gatherFacts(s).anyCaster);
+}
+
+} // namespace

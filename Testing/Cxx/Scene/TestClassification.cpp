@@ -1,0 +1,281 @@
+// Who draws an actor: the tracer or VTK, with the reason, and what rays and lights see of it.
+#include "SceneTest.h"
+
+#include "vtkCompositePolyDataMapper2.h"
+#include "vtkDataSetMapper.h"
+#include "vtkDoubleArray.h"
+#include "vtkGlyph3DMapper.h"
+#include "vtkHybridMaterial.h"
+#include "vtkImageData.h"
+#include "vtkLookupTable.h"
+#include "vtkMatrix4x4.h"
+#include "vtkMultiBlockDataSet.h"
+#include "vtkPlane.h"
+#include "vtkPointData.h"
+#include "vtkPointGaussianMapper.h"
+#include "vtkProperty.h"
+#include "vtkShaderProperty.h"
+#include "vtkTexture.h"
+
+namespace
+{
+
+class Classification : public SceneTest
+{
+protected:
+  Classification()
+    : mesh(makeSquare())
+    , actor(this->addMesh(this->mesh))
+    , mapper(vtkPolyDataMapper::SafeDownCast(this->actor->GetMapper()))
+    , property(this->actor->GetProperty())
+  {
+  }
+
+  void expectTraced()
+  {
+    const hrt::Snapshot& s = this->update();
+    ASSERT_EQ(s.parts.size(), 1u);
+    EXPECT_TRUE(s.parts[0].visibleToCamera);
+    EXPECT_TRUE(s.parts[0].visibleToRays);
+    EXPECT_TRUE(s.parts[0].castsShadow);
+    EXPECT_TRUE(this->scene->IsDrawnByTracer(this->actor));
+    EXPECT_STREQ(this->scene->GetReasonLeftToVTK(this->actor), "");
+  }
+
+  void expectLeft(const std::string& reason)
+  {
+    EXPECT_FALSE(this->scene->IsDrawnByTracer(this->actor));
+    EXPECT_NE(
+      std::string(this->scene->GetReasonLeftToVTK(this->actor)).find(reason), std::string::npos)
+      << this->scene->GetReasonLeftToVTK(this->actor);
+  }
+
+  // VTK draws it, rays see its triangles.
+  void expectLeftButSeen(const std::string& reason, bool castsShadow)
+  {
+    const hrt::Snapshot& s = this->update();
+    this->expectLeft(reason);
+    ASSERT_EQ(s.parts.size(), 1u);
+    EXPECT_EQ(s.parts[0].geometry->triangleCount(), 2u);
+    EXPECT_FALSE(s.parts[0].visibleToCamera);
+    EXPECT_TRUE(s.parts[0].visibleToRays);
+    EXPECT_EQ(s.parts[0].castsShadow, castsShadow);
+  }
+
+  // VTK draws it and rays pass through.
+  void expectLeftAndUnseen(const std::string& reason)
+  {
+    EXPECT_TRUE(this->update().parts.empty());
+    this->expectLeft(reason);
+    EXPECT_EQ(this->snapshot->refusals.total(), 0u);
+  }
+
+  vtkSmartPointer<vtkPolyData> mesh;
+  vtkSmartPointer<vtkActor> actor;
+  vtkPolyDataMapper* mapper;
+  vtkProperty* property;
+};
+
+TEST_F(Classification, PlainSurfacesAreTraced)
+{
+  this->expectTraced();
+  this->property->SetInterpolationToFlat();
+  this->expectTraced();
+  this->property->LightingOff();
+  this->expectTraced();
+}
+
+TEST_F(Classification, HiddenAndUnknownPropsAreNot)
+{
+  this->actor->VisibilityOff();
+  this->update();
+  EXPECT_FALSE(this->scene->IsDrawnByTracer(this->actor));
+  EXPECT_FALSE(this->scene->IsDrawnByTracer(nullptr));
+  EXPECT_STREQ(this->scene->GetReasonLeftToVTK(nullptr), "");
+}
+
+TEST_F(Classification, WireframeAndPoints)
+{
+  this->property->SetRepresentationToWireframe();
+  this->expectLeftAndUnseen("wireframe");
+  this->property->SetRepresentationToPoints();
+  this->expectLeftAndUnseen("points");
+  this->property->SetRepresentationToSurface();
+  this->expectTraced();
+}
+
+TEST_F(Classification, ClippingPlanes)
+{
+  vtkNew<vtkPlane> plane;
+  this->mapper->AddClippingPlane(plane);
+  this->expectLeftAndUnseen("clipped");
+  this->mapper->RemoveAllClippingPlanes();
+  this->expectTraced();
+}
+
+TEST_F(Classification, Textures)
+{
+  vtkNew<vtkImageData> image;
+  image->SetDimensions(2, 2, 1);
+  image->AllocateScalars(VTK_UNSIGNED_CHAR, 3);
+  vtkNew<vtkTexture> texture;
+  texture->SetInputData(image);
+  texture->UseSRGBColorSpaceOn(); // else vtkProperty refuses it
+  this->actor->SetTexture(texture);
+  this->expectLeftButSeen("textured", true);
+  this->actor->SetTexture(nullptr);
+  this->expectTraced();
+  this->property->SetTexture("albedoTex", texture);
+  this->expectLeftButSeen("textured", true);
+}
+
+TEST_F(Classification, EdgesAndVertices)
+{
+  this->property->EdgeVisibilityOn();
+  this->expectLeftButSeen("edges", true);
+  this->property->EdgeVisibilityOff();
+  this->property->VertexVisibilityOn();
+  this->expectLeftButSeen("vertices", true);
+}
+
+TEST_F(Classification, PhysicallyBased)
+{
+  this->property->SetInterpolationToPBR();
+  this->expectLeftButSeen("physically based", true);
+}
+
+TEST_F(Classification, ShaderReplacements)
+{
+  this->actor->GetShaderProperty()->AddFragmentShaderReplacement(
+    "//VTK::Light::Impl", true, "//VTK::Light::Impl\n", false);
+  this->expectLeftButSeen("shader", true);
+  this->actor->GetShaderProperty()->ClearAllShaderReplacements();
+  this->expectTraced();
+}
+
+TEST_F(Classification, VertsAndLines)
+{
+  this->mesh->SetVerts(makeCells({ { 0 } }));
+  this->expectLeftButSeen("vertex or line", true);
+  this->mesh->SetVerts(nullptr);
+  this->mesh->SetLines(makeCells({ { 0, 1 } }));
+  this->expectLeftButSeen("vertex or line", true);
+}
+
+TEST_F(Classification, LinesAloneAreNoEmptyPart)
+{
+  this->mesh->SetPolys(nullptr);
+  this->mesh->SetLines(makeCells({ { 0, 1 } }));
+  this->expectLeftAndUnseen("vertex or line");
+}
+
+TEST_F(Classification, TranslucencyOfEveryOrigin)
+{
+  this->property->SetOpacity(0.5);
+  this->expectLeftButSeen("translucent", false);
+  this->actor->ForceOpaqueOn();
+  this->expectLeftButSeen("translucent", false);
+  this->actor->ForceOpaqueOff();
+  this->property->SetOpacity(1.0);
+  this->actor->ForceTranslucentOn();
+  this->expectLeftButSeen("translucent", false);
+  this->actor->ForceTranslucentOff();
+  vtkNew<vtkProperty> back;
+  back->SetOpacity(0.5);
+  this->actor->SetBackfaceProperty(back);
+  this->expectLeftButSeen("translucent", false);
+  this->actor->SetBackfaceProperty(nullptr);
+  this->expectTraced();
+}
+
+TEST_F(Classification, TranslucentScalars)
+{
+  vtkNew<vtkDoubleArray> scalars;
+  for (double v : { 0.0, 0.25, 0.5, 1.0 })
+  {
+    scalars->InsertNextValue(v);
+  }
+  this->mesh->GetPointData()->SetScalars(scalars);
+  vtkNew<vtkLookupTable> table;
+  table->Build();
+  this->mapper->SetLookupTable(table);
+  this->expectTraced();
+  table->SetTableValue(7, 1, 0, 0, 0.5);
+  this->expectLeftButSeen("translucent", false);
+}
+
+TEST_F(Classification, Glass)
+{
+  vtkHybridMaterial::SetGlass(this->actor, 1.5);
+  this->property->SetOpacity(0.5);
+  const hrt::Snapshot& s = this->update();
+  EXPECT_TRUE(s.parts.at(0).visibleToCamera);
+  EXPECT_FALSE(s.parts[0].castsShadow);
+  EXPECT_TRUE(this->scene->IsDrawnByTracer(this->actor));
+}
+
+TEST_F(Classification, ActorsWithoutMapperDrawThemselves)
+{
+  this->actor->SetMapper(nullptr);
+  this->expectLeftAndUnseen("no mapper");
+}
+
+TEST_F(Classification, OtherMappersAndOtherData)
+{
+  vtkNew<vtkCompositePolyDataMapper2> composite;
+  vtkNew<vtkMultiBlockDataSet> blocks;
+  blocks->SetBlock(0, this->mesh);
+  composite->SetInputDataObject(blocks);
+  vtkNew<vtkGlyph3DMapper> glyphs;
+  vtkNew<vtkPointGaussianMapper> gaussians;
+  gaussians->SetInputData(this->mesh);
+  for (vtkMapper* other : { static_cast<vtkMapper*>(composite), static_cast<vtkMapper*>(glyphs),
+         static_cast<vtkMapper*>(gaussians) })
+  {
+    this->actor->SetMapper(other);
+    this->expectLeftAndUnseen("something other");
+  }
+}
+
+TEST_F(Classification, DataSetMappersAreTracedWhenTheirInputIsPolyData)
+{
+  vtkNew<vtkDataSetMapper> any;
+  any->SetInputData(this->mesh);
+  this->actor->SetMapper(any);
+  this->expectTraced();
+  vtkNew<vtkImageData> image;
+  image->SetDimensions(2, 2, 2);
+  any->SetInputData(image);
+  this->expectLeftAndUnseen("not vtkPolyData");
+}
+
+TEST_F(Classification, StreamedPieces)
+{
+  this->mapper->SetNumberOfSubPieces(2);
+  this->expectLeftAndUnseen("pieces");
+}
+
+TEST_F(Classification, ProjectiveMatrices)
+{
+  vtkNew<vtkMatrix4x4> matrix;
+  matrix->SetElement(3, 0, 0.125);
+  this->actor->SetUserMatrix(matrix);
+  this->expectLeftAndUnseen("projective");
+}
+
+TEST_F(Classification, TheMapperIsTakenAnewEachFrame)
+{
+  this->expectTraced();
+  vtkNew<vtkPolyDataMapper> coarse; // as level-of-detail actors do
+  coarse->SetInputData(makeMesh({ { 0, 0, 0 }, { 1, 0, 0 }, { 0, 1, 0 } }, { { 0, 1, 2 } }));
+  this->actor->SetMapper(coarse);
+  EXPECT_EQ(this->update().triangleCount, 1u);
+}
+
+TEST_F(Classification, ActorsOutsideTheViewAreInTheSnapshot)
+{
+  this->actor->SetPosition(0, 0, 1e6); // behind the camera
+  this->expectTraced();
+}
+
+} // anonymous namespace

@@ -1,0 +1,241 @@
+// Every kind of bad input: what is bad is counted and left out, the rest is kept, and the user is
+// told once, by a message that names the actor.
+#include "SceneTest.h"
+
+#include <limits>
+
+namespace
+{
+
+const double kNaN = std::numeric_limits<double>::quiet_NaN();
+const double kInfinity = std::numeric_limits<double>::infinity();
+
+class Refusals : public SceneTest
+{
+protected:
+  // Three frames of the same scene give one message.
+  void expectOneWarning(vtkProp* about, const std::string& phrase)
+  {
+    for (int frame = 0; frame < 3; ++frame)
+    {
+      this->update();
+    }
+    ASSERT_EQ(this->messages.warnings.size(), 1u);
+    EXPECT_NE(this->messages.warnings[0].find(addressOf(about)), std::string::npos);
+    EXPECT_NE(this->messages.warnings[0].find(phrase), std::string::npos)
+      << this->messages.warnings[0];
+    EXPECT_TRUE(this->messages.errors.empty());
+  }
+
+  const std::vector<glm::dvec3> points = { { 0, 0, 0 }, { 1, 0, 0 }, { 1, 1, 0 }, { 0, 1, 0 } };
+};
+
+TEST_F(Refusals, PointsThatAreNotFiniteOrTooLarge)
+{
+  for (double bad : { kNaN, kInfinity, -kInfinity, 1.9e18, -1.9e18 })
+  {
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      SCOPED_TRACE(bad);
+      auto broken = this->points;
+      broken[3][axis] = bad;
+      this->renderer->RemoveAllViewProps();
+      this->messages.warnings.clear();
+      auto actor = this->addMesh(makeMesh(broken, { { 0, 1, 2 }, { 0, 2, 3 }, { 1, 2, 3 } }));
+      const hrt::Geometry& g = this->onlyGeometry();
+      EXPECT_EQ(g.cellIds, (std::vector<std::int64_t>{ 0 }));
+      EXPECT_EQ(g.boundsMax, glm::vec3(1, 1, 0));
+      EXPECT_EQ(this->snapshot->refusals.nonFinitePoints, 2u);
+      EXPECT_EQ(this->snapshot->refusals.total(), 2u);
+      this->expectOneWarning(actor, "2 triangles with points that are not finite");
+      EXPECT_EQ(this->snapshot->refusals.nonFinitePoints, 2u) << "counted in every frame";
+    }
+  }
+}
+
+TEST_F(Refusals, CoordinatesUpToTheLimitAreKept)
+{
+  auto large = this->points;
+  large[1].x = 1.844e18;
+  this->addMesh(makeMesh(large, { { 0, 1, 3 } }));
+  EXPECT_EQ(this->onlyGeometry().triangleCount(), 1u);
+}
+
+TEST_F(Refusals, BadPointsThatNoTriangleNamesDoNotMatter)
+{
+  auto broken = this->points;
+  broken.emplace_back(kNaN, 0, 0);
+  this->addMesh(makeMesh(broken, { { 0, 1, 2 } }));
+  EXPECT_EQ(this->onlyGeometry().triangleCount(), 1u);
+  EXPECT_EQ(this->snapshot->refusals.total(), 0u);
+  EXPECT_TRUE(this->messages.warnings.empty());
+}
+
+TEST_F(Refusals, IndicesOutOfRange)
+{
+  auto actor =
+    this->addMesh(makeMesh(this->points, { { 0, 1, 2 }, { 0, 2, 4 }, { -1, 2, 3 }, { 0, 2, 3 } }));
+  EXPECT_EQ(this->onlyGeometry().cellIds, (std::vector<std::int64_t>{ 0, 3 }));
+  EXPECT_EQ(this->snapshot->refusals.invalidIndices, 2u);
+  EXPECT_EQ(this->snapshot->refusals.total(), 2u);
+  this->expectOneWarning(actor, "2 triangles that name points that do not exist");
+}
+
+TEST_F(Refusals, APolygonIsRefusedAsAWhole)
+{
+  this->addMesh(makeMesh(this->points, { { 0, 1, 2, 3, 99 }, { 0, 1, 2 } }));
+  EXPECT_EQ(this->onlyGeometry().cellIds, (std::vector<std::int64_t>{ 1 }));
+  EXPECT_EQ(this->snapshot->refusals.invalidIndices, 3u) << "a pentagon is three triangles";
+}
+
+TEST_F(Refusals, AStripLosesOnlyTheTrianglesThatAreBroken)
+{
+  auto broken = this->points;
+  broken.insert(broken.end(), { { 2, 0, 0 }, { kNaN, 0, 0 } });
+  this->addMesh(makeMesh(broken, {}, VTK_DOUBLE, { { 0, 1, 3, 2, 4, 77 }, { 0, 1, 3, 5 } }));
+  EXPECT_EQ(this->onlyGeometry().cellIds, (std::vector<std::int64_t>{ 0, 0, 0, 1 }));
+  EXPECT_EQ(this->snapshot->refusals.invalidIndices, 1u);
+  EXPECT_EQ(this->snapshot->refusals.nonFinitePoints, 1u);
+}
+
+TEST_F(Refusals, TrianglesWithoutArea)
+{
+  auto broken = this->points;
+  broken.insert(broken.end(), { { 0.5, 0.5, 0 }, { 0, 0, 0 } });
+  auto actor = this->addMesh(makeMesh(broken,
+    { { 0, 1, 1 },     // a point twice
+      { 0, 1, 5 },     // two points in one place
+      { 0, 4, 2 },     // three in a line
+      { 0, 1, 2 } })); // good
+  EXPECT_EQ(this->onlyGeometry().cellIds, (std::vector<std::int64_t>{ 3 }));
+  EXPECT_EQ(this->snapshot->refusals.degenerateTriangles, 3u);
+  EXPECT_EQ(this->snapshot->refusals.total(), 3u);
+  this->expectOneWarning(actor, "3 triangles without area");
+}
+
+TEST_F(Refusals, SliversHaveAnArea)
+{
+  this->addMesh(makeMesh({ { 0, 0, 0 }, { 1, 0, 0 }, { 0.5, 1e-30, 0 } }, { { 0, 1, 2 } }));
+  EXPECT_EQ(this->onlyGeometry().triangleCount(), 1u);
+}
+
+TEST_F(Refusals, AllKindsGiveOneMessageWithEveryCount)
+{
+  auto broken = this->points;
+  broken[3].x = kNaN;
+  auto actor =
+    this->addMesh(makeMesh(broken, { { 0, 1, 2 }, { 0, 1, 9 }, { 0, 1, 3 }, { 0, 0, 1 } }));
+  this->expectOneWarning(actor, "1 triangle with points that are not finite");
+  EXPECT_NE(this->messages.warnings[0].find("1 triangle that name"), std::string::npos);
+  EXPECT_NE(this->messages.warnings[0].find("1 triangle without area"), std::string::npos);
+  EXPECT_EQ(this->snapshot->refusals.total(), 3u);
+  EXPECT_EQ(this->snapshot->triangleCount, 1u);
+}
+
+TEST_F(Refusals, AreToldAgainWhenTheDataChange)
+{
+  auto mesh = makeMesh(this->points, { { 0, 1, 2 }, { 0, 0, 1 } });
+  this->addMesh(mesh);
+  this->update();
+  EXPECT_EQ(this->messages.warnings.size(), 1u);
+  mesh->Modified(); // the same data once more
+  this->update();
+  EXPECT_EQ(this->messages.warnings.size(), 1u);
+  mesh->SetPolys(makeCells({ { 0, 1, 2 }, { 0, 0, 1 }, { 1, 1, 2 } }));
+  this->update();
+  EXPECT_EQ(this->messages.warnings.size(), 2u);
+  EXPECT_EQ(this->snapshot->refusals.degenerateTriangles, 2u);
+}
+
+TEST_F(Refusals, EachPartHasItsOwnMessage)
+{
+  auto good = this->addMesh(makeSquare());
+  auto bad = this->addMesh(makeMesh(this->points, { { 0, 1, 2 }, { 0, 0, 1 } }));
+  auto worse = this->addMesh(makeMesh(this->points, { { 0, 1, 2 }, { 0, 1, 8 }, { 0, 1, 9 } }));
+  this->update();
+  ASSERT_EQ(this->messages.warnings.size(), 2u);
+  EXPECT_NE(this->messages.warnings[0].find(addressOf(bad)), std::string::npos);
+  EXPECT_NE(this->messages.warnings[1].find(addressOf(worse)), std::string::npos);
+  EXPECT_EQ(this->snapshot->parts.size(), 3u);
+  EXPECT_EQ(this->snapshot->refusals.degenerateTriangles, 1u);
+  EXPECT_EQ(this->snapshot->refusals.invalidIndices, 2u);
+}
+
+TEST_F(Refusals, PartsWithNothingLeftAreEmpty)
+{
+  auto actor = this->addMesh(makeMesh(this->points, { { 0, 0, 1 } }));
+  auto good = this->addMesh(makeSquare());
+  this->expectOneWarning(actor, "1 triangle without area");
+  ASSERT_EQ(this->snapshot->parts.size(), 1u);
+  EXPECT_EQ(this->scene->GetProp(0), good.Get());
+  EXPECT_EQ(this->snapshot->refusals.emptyParts, 1u);
+  EXPECT_EQ(this->snapshot->refusals.degenerateTriangles, 1u);
+  EXPECT_TRUE(this->scene->IsDrawnByTracer(actor)) << "VTK has nothing better to draw";
+}
+
+TEST_F(Refusals, DataWithoutPointsOrCellsAreEmptyWithoutAMessage)
+{
+  vtkNew<vtkPolyData> nothing;
+  this->addMesh(nothing);
+  this->addMesh(makeMesh(this->points, {}));
+  EXPECT_TRUE(this->update().parts.empty());
+  EXPECT_EQ(this->snapshot->refusals.emptyParts, 2u);
+  EXPECT_EQ(this->snapshot->refusals.total(), 2u);
+  EXPECT_TRUE(this->messages.warnings.empty());
+}
+
+TEST_F(Refusals, CellsWithoutPointsAreRefused)
+{
+  vtkNew<vtkPolyData> mesh;
+  mesh->SetPolys(makeCells({ { 0, 1, 2 } }));
+  auto actor = this->addMesh(mesh);
+  this->expectOneWarning(actor, "1 triangle that name points that do not exist");
+  EXPECT_EQ(this->snapshot->refusals.invalidIndices, 1u);
+  EXPECT_EQ(this->snapshot->refusals.emptyParts, 1u);
+}
+
+TEST_F(Refusals, AMapperWithoutInput)
+{
+  vtkNew<vtkPolyDataMapper> mapper;
+  vtkNew<vtkActor> actor;
+  actor->SetMapper(mapper);
+  this->renderer->AddActor(actor);
+  this->addMesh(makeSquare());
+  this->expectOneWarning(actor, "no input");
+  EXPECT_EQ(this->snapshot->refusals.emptyParts, 1u);
+  EXPECT_EQ(this->snapshot->parts.size(), 1u);
+}
+
+TEST_F(Refusals, MatricesThatCannotBeUsed)
+{
+  for (double z : { 0.0, kNaN, kInfinity })
+  {
+    SCOPED_TRACE(z);
+    this->renderer->RemoveAllViewProps();
+    this->messages.warnings.clear();
+    auto actor = this->addMesh(makeSquare());
+    auto good = this->addMesh(makeSquare());
+    actor->SetScale(1, 1, z);
+    this->expectOneWarning(actor, "matrix");
+    EXPECT_EQ(this->snapshot->refusals.singularMatrices, 1u);
+    EXPECT_EQ(this->snapshot->refusals.total(), 1u);
+    ASSERT_EQ(this->snapshot->parts.size(), 1u);
+    EXPECT_EQ(this->scene->GetProp(0), good.Get());
+    EXPECT_FALSE(this->scene->IsDrawnByTracer(actor));
+  }
+}
+
+TEST_F(Refusals, AMatrixThatRecoversIsUsedAndWarnedAboutAgain)
+{
+  auto actor = this->addMesh(makeSquare());
+  actor->SetScale(1, 0, 1);
+  this->update();
+  EXPECT_EQ(this->messages.warnings.size(), 1u);
+  actor->SetScale(1, 1, 1);
+  EXPECT_EQ(this->update().parts.size(), 1u);
+  actor->SetScale(1, 0, 1);
+  this->update();
+  EXPECT_EQ(this->messages.warnings.size(), 2u);
+}
+
+} // anonymous namespace

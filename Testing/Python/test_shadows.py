@@ -1,0 +1,156 @@
+"""Where shadows fall: the pass' "shadow" buffer against the analytic shadow of a square, for every
+light kind, in square and non-square windows; and no false shadow on surfaces that shade themselves."""
+
+import numpy as np
+import pytest
+import scenes
+from vtkhybrid import buffer, vtkHybridRayTracingPass
+
+HALF = 0.5  # the caster: a square of half this side at this height, parallel to the floor
+HEIGHT = 1.0
+FLOOR = 3.0
+RESOLUTION = 1024
+
+LIGHTS = {
+    "directional": dict(position=(1.0, 3.0, 0.5), positional=False),
+    "spot": dict(position=(1.0, 3.0, 0.5), positional=True, ConeAngle=35.0),
+    "wide spot": dict(position=(1.0, 3.0, 0.5), positional=True, ConeAngle=75.0),
+    "point": dict(position=(1.0, 3.0, 0.5), positional=True, ConeAngle=180.0),
+}
+
+
+def scene(kind):
+    caster = scenes.actor_of(scenes.plane(HALF, HEIGHT))
+    floor = scenes.actor_of(scenes.plane(FLOOR, 0.0))
+    renderer = scenes.renderer_of(floor, caster)
+    renderer.AddLight(scenes.scene_light(focal_point=(0, 0, 0), **LIGHTS[kind]))
+    scenes.look(renderer, (1.0, 5.0, 4.0))
+    rt = vtkHybridRayTracingPass()
+    rt.SetShadowMapResolution(RESOLUTION)
+    rt.SetBuffers(["shadow", "position", "prop"])
+    renderer.SetPass(rt)
+    return renderer, rt
+
+
+def analytic(kind, position):
+    """How far inside (negative) or outside of the square's shadow each floor point lies, measured in
+    the square's plane, and the part of the way to the light at which that plane is crossed."""
+    light = np.array(LIGHTS[kind]["position"])
+    if LIGHTS[kind]["positional"]:
+        toward = light - position
+    else:
+        toward = np.broadcast_to(light, position.shape)
+    share = HEIGHT / toward[..., 1]
+    crossing = position + share[..., None] * toward
+    return np.maximum(np.abs(crossing[..., 0]), np.abs(crossing[..., 2])) - HALF
+
+
+def texel_in_caster_plane(kind):
+    """Upper bound of a map's texel, seen in the square's plane.
+
+    Directional: the map spans at most the scene's box diagonal, and a texel appears on the plane
+    stretched by 1 / cos(light, plane's normal). Spot: the frustum's width at the plane. Cube face:
+    2 d / resolution at distance d along the face's axis, stretched likewise."""
+    light = np.array(LIGHTS[kind]["position"])
+    cosine = light[1] / np.linalg.norm(light)
+    if kind == "directional":
+        extent = np.linalg.norm([2 * FLOOR, HEIGHT, 2 * FLOOR])
+        return extent / RESOLUTION / cosine
+    reach = np.linalg.norm(light) + HALF * 2
+    tangent = np.tan(np.radians(35.0)) if kind == "spot" else 1.0
+    return 2 * tangent * reach / RESOLUTION / cosine
+
+
+@pytest.mark.parametrize("size", [(300, 300), (600, 300), (200, 500)], ids=lambda s: f"{s[0]}x{s[1]}")
+@pytest.mark.parametrize("kind", LIGHTS)
+def test_shadow_of_a_square(kind, size, render):
+    renderer, rt = scene(kind)
+    render(renderer, size)
+    on_floor = buffer(rt, "prop") == 0
+    visible = buffer(rt, "shadow")[on_floor]
+    outside = analytic(kind, buffer(rt, "position")[on_floor])
+    # Bilinear comparison spreads the border over the texels on its two sides.
+    border = 2.0 * texel_in_caster_plane(kind)
+    lit = outside > border
+    dark = outside < -border
+    wrong = np.count_nonzero(visible[lit] != 1.0) + np.count_nonzero(visible[dark] != 0.0)
+    print(
+        f"shadow {kind} {size[0]}x{size[1]}: {wrong} wrong of {visible.size} floor pixels,"
+        f" {visible.size - lit.sum() - dark.sum()} on the border of {border:.4f}"
+    )
+    assert dark.sum() > 200 and lit.sum() > 2000
+    assert wrong == 0
+
+
+def test_headlight_shadow_falls_away_from_the_viewer(render):
+    """A directional headlight casts along the view axis: a point is in shadow when the square covers
+    it in that direction, whatever the perspective shows."""
+    renderer, rt = scene("directional")
+    renderer.RemoveAllLights()
+    headlight = scenes.vtkLight()
+    headlight.SetLightTypeToHeadlight()
+    renderer.AddLight(headlight)
+    render(renderer, (400, 300))
+    camera = renderer.GetActiveCamera()
+    toward = -np.array(camera.GetDirectionOfProjection())
+    on_floor = buffer(rt, "prop") == 0
+    position = buffer(rt, "position")[on_floor]
+    crossing = position + (HEIGHT / toward[1]) * toward
+    outside = np.maximum(np.abs(crossing[:, 0]), np.abs(crossing[:, 2])) - HALF
+    border = 2.0 * np.linalg.norm([2 * FLOOR, HEIGHT, 2 * FLOOR]) / RESOLUTION / toward[1]
+    visible = buffer(rt, "shadow")[on_floor]
+    assert np.count_nonzero(outside < -border) > 100
+    assert (visible[outside > border] == 1.0).all()
+    assert (visible[outside < -border] == 0.0).all()
+
+
+def test_light_at_the_eye_casts_no_visible_shadow(render):
+    renderer, rt = scene("spot")
+    renderer.RemoveAllLights()
+    headlight = scenes.vtkLight()
+    headlight.SetLightTypeToHeadlight()
+    headlight.PositionalOn()
+    headlight.SetConeAngle(80)
+    renderer.AddLight(headlight)
+    render(renderer)
+    hit = buffer(rt, "prop") >= 0
+    assert (buffer(rt, "shadow")[hit] == 1.0).all()
+
+
+@pytest.mark.parametrize("kind", LIGHTS)
+def test_sphere_does_not_shadow_its_lit_side(kind, render):
+    """No acne: where both the facet and the sphere itself face the light by more than the fold that
+    the bias forgives near the terminator, the share is exactly 1."""
+    source = scenes.vtkSphereSource()
+    source.SetThetaResolution(60)
+    source.SetPhiResolution(60)
+    renderer = scenes.renderer_of(scenes.actor_of(source))
+    renderer.AddLight(scenes.scene_light(**LIGHTS[kind]))
+    scenes.look(renderer, (1.5, 1.0, 1.5))
+    rt = vtkHybridRayTracingPass()
+    rt.SetBuffers(["shadow", "normal", "position", "prop"])
+    renderer.SetPass(rt)
+    render(renderer, (400, 400))
+    hit = buffer(rt, "prop") >= 0
+    light = np.array(LIGHTS[kind]["position"])
+    position = buffer(rt, "position")[hit]
+    toward = light - position if LIGHTS[kind]["positional"] else np.broadcast_to(light, position.shape)
+    toward = toward / np.linalg.norm(toward, axis=1, keepdims=True)
+    facing = np.sum(toward * position / np.linalg.norm(position, axis=1, keepdims=True), axis=1)
+    # Facets of 6 degrees: beyond 90 - 6 the facet itself may turn its back to the light.
+    lit = facing > np.sin(np.radians(6.0))
+    assert lit.sum() > 5000
+    assert (buffer(rt, "shadow")[hit][lit] == 1.0).all()
+
+
+def test_shadow_darkens_the_picture_by_the_light_it_lost(render):
+    """In shadow only the ambient part of one light's picture is left."""
+    renderer, rt = scene("directional")
+    for i in range(2):
+        renderer.GetViewProps().GetItemAsObject(i).GetProperty().SetAmbient(0.25)
+    shown = render(renderer)
+    shadow = buffer(rt, "shadow")
+    on_floor = buffer(rt, "prop") == 0
+    dark = on_floor & (shadow == 0.0)
+    assert dark.sum() > 200
+    assert (np.abs(shown[dark].astype(int) - round(0.25 * 255)) <= 1).all()
