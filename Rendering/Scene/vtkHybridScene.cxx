@@ -125,9 +125,22 @@ struct Frame
 {
   std::shared_ptr<hrt::Snapshot> snapshot = std::make_shared<hrt::Snapshot>();
   std::vector<vtkWeakPointer<vtkProp>> props; // of the parts
+  std::vector<const vtkProp*> viewProps;      // of the parts: what the renderer holds
   std::unordered_map<const vtkProp*, Verdict> verdicts;
   TriangleNumbers numbers;
 };
+
+//------------------------------------------------------------------------------
+// VTK draws an assembly as a whole. Where one part of it is left to VTK the others come along, so that
+// nothing is drawn twice.
+void keepAssembliesTogether(Frame& frame)
+{
+  for (std::size_t i = 0; i < frame.viewProps.size(); ++i)
+  {
+    hrt::Part& part = frame.snapshot->parts[i];
+    part.visibleToCamera = part.visibleToCamera && frame.verdicts[frame.viewProps[i]].drawn;
+  }
+}
 
 } // anonymous namespace
 
@@ -244,6 +257,7 @@ LeftToVTK vtkHybridScene::vtkInternals::AddPart(
   }
   frame.snapshot->parts.push_back(std::move(numbered));
   frame.props.emplace_back(path.actor);
+  frame.viewProps.push_back(path.props.front());
   return LeftToVTK::No;
 }
 
@@ -345,6 +359,7 @@ void vtkHybridScene::vtkInternals::Update(vtkRenderer* renderer)
   {
     this->AddPath(path, frame);
   }
+  keepAssembliesTogether(frame);
   snapshot.triangleCount = frame.numbers.taken();
   snapshot.camera = extractCamera(renderer);
   snapshot.background = extractBackground(renderer, snapshot.camera);

@@ -140,6 +140,19 @@ def test_drawn_by_vtk_where_it_belongs(guest, render):
     assert statistics(rt)["stages"]["visibility"]["ran"]
 
 
+def test_assembly_with_a_part_that_vtk_draws(render):
+    """Nothing of it is drawn twice: its traced part would be overdrawn without its shadow."""
+    assembly = scenes.vtkAssembly()
+    assembly.AddPart(ball())
+    assembly.AddPart(edges())
+    assembly.SetPosition(0.2, 0.1, 0)
+    renderer = scenes.renderer_of(assembly, ball(-0.9, 0.3))
+    scenes.look(renderer, (0.6, 1.2, 4))
+    rt, wrong = compare(renderer, render)
+    assert wrong < OUTLINE_SHARE
+    assert len(statistics(rt)["left_to_vtk"]) == 1
+
+
 @pytest.mark.parametrize("peeling", [False, True], ids=["blended", "peeled"])
 def test_translucent_layers(peeling, render):
     renderer = scenes.renderer_of(ball(), translucent(), ball(-0.3, 0.7, Opacity=0.3, Color=(0, 1, 0)))

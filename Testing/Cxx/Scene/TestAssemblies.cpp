@@ -3,6 +3,7 @@
 
 #include "vtkAssembly.h"
 #include "vtkFollower.h"
+#include "vtkProperty.h"
 #include "vtkHybridMaterial.h"
 #include "vtkInformation.h"
 #include "vtkLODProp3D.h"
@@ -171,6 +172,28 @@ TEST_F(Assemblies, HandTheirMaterialToPartsWithoutOne)
   ASSERT_EQ(s.parts.size(), 2u);
   EXPECT_EQ(s.parts[0].material.reflectance, 0.5f);
   EXPECT_EQ(s.parts[1].material.reflectance, 0.25f);
+}
+
+// VTK draws an assembly as a whole: where it has to draw one part, it draws all, and the tracer none.
+TEST_F(Assemblies, WithOnePartLeftToVTKAreLeftWhole)
+{
+  auto plain = makeActor(makeSquare());
+  auto wire = makeActor(makeSquare());
+  wire->GetProperty()->EdgeVisibilityOn();
+  auto alone = makeActor(makeSquare());
+  vtkNew<vtkAssembly> assembly;
+  assembly->AddPart(plain);
+  assembly->AddPart(wire);
+  this->renderer->AddActor(assembly);
+  this->renderer->AddActor(alone);
+  const hrt::Snapshot& s = this->update();
+  ASSERT_EQ(s.parts.size(), 3u);
+  EXPECT_FALSE(s.parts[0].visibleToCamera);
+  EXPECT_FALSE(s.parts[1].visibleToCamera);
+  EXPECT_TRUE(s.parts[2].visibleToCamera);
+  EXPECT_TRUE(s.parts[0].visibleToRays) << "mirrors show it all the same";
+  EXPECT_FALSE(this->scene->IsDrawnByTracer(assembly));
+  EXPECT_TRUE(this->scene->IsDrawnByTracer(alone));
 }
 
 // vtkAssembly replaces the keys of its parts by its own whenever it is drawn or asked.
