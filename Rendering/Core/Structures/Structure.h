@@ -40,6 +40,14 @@ struct StructureReport
   double milliseconds = 0.0;
 };
 
+// How the rays of a stream lie to each other: what an implementation may gain from, never what it
+// answers.
+enum class RayOrder : std::uint8_t
+{
+  Coherent,  // neighbours start or end close together: primary, shadow, first mirror rays
+  Incoherent
+};
+
 class Structure
 {
 public:
@@ -55,6 +63,11 @@ public:
 
   // True when a part that casts shadows lies at 0 < t < tMaximum. Same rules.
   virtual bool occluded(const Ray& ray) const = 0;
+
+  // The same for a stream of rays: for every ray the very result of the single call.
+  virtual void intersect(const Ray* rays, Hit* hits, std::size_t count, RayOrder order) const;
+  virtual void occluded(
+    const Ray* rays, std::uint8_t* occluded, std::size_t count, RayOrder order) const;
 };
 
 } // namespace hrt
