@@ -3,14 +3,31 @@
 
 #include "Rendering/Core/Shading/Lighting.h"
 
+#include <algorithm>
+
 namespace hrt
 {
 
-Lighting::Lighting(
-  const Snapshot& snapshot, const Structure& structure, const TracerSettings& settings)
+namespace
+{
+
+// A shadow ray is followed through at most so many translucent surfaces; beyond, it counts as blocked.
+// Each lets less than 1 - 2^-8 of the light through or is invisible in 8 bits.
+constexpr int kMostVeils = 64;
+
+bool isTranslucent(const Part& part)
+{
+  return part.visibleToRays && !part.castsShadow && !part.material.isGlass();
+}
+
+} // namespace
+
+Lighting::Lighting(const Snapshot& snapshot, const Surfaces& surfaces, const Structure& structure,
+  const TracerSettings& settings)
   : Scene(snapshot)
   , Rays(structure)
   , Settings(settings)
+  , Points(surfaces)
 {
   const CameraRays rays = snapshot.camera.worldRays(snapshot.origin);
   this->HasEye = rays.originX == glm::dvec3(0.0) && rays.originY == glm::dvec3(0.0);
@@ -19,6 +36,8 @@ Lighting::Lighting(
   {
     this->Lights.push_back(shadingLight(light, snapshot.singleHeadlight, glm::dmat4(1.0)));
   }
+  this->AnyTranslucent =
+    std::any_of(snapshot.parts.begin(), snapshot.parts.end(), &isTranslucent);
 }
 
 // Single precision never sees a large coordinate: the light is placed relative to the point.
@@ -30,69 +49,75 @@ shading::HrtLight Lighting::lightFrom(const SurfacePoint& point, std::size_t ind
   return light;
 }
 
-glm::vec3 Lighting::shade(
-  const SurfacePoint& point, const glm::dvec3& direction, RayCount& shadowRays) const
+void Lighting::shade(const SurfacePoint& point, const glm::dvec3& toViewer, const Target& target,
+  ShadowQueue& queue, RayCount& shadowRays) const
 {
   if (!point.material->lit || this->Scene.lights.empty())
   {
-    return shading::hrtUnlit(point.colors);
+    target.sum += target.weight * shading::hrtUnlit(point.colors);
+    return;
   }
-  return point.colors.ambient + this->sumOfLights(point, point.colors, direction, shadowRays);
+  target.sum += target.weight * point.colors.ambient;
+  this->addLights(point, point.colors, toViewer, target, queue, shadowRays);
 }
 
-glm::vec3 Lighting::highlights(
-  const SurfacePoint& point, const glm::dvec3& direction, RayCount& shadowRays) const
+void Lighting::highlights(const SurfacePoint& point, const glm::dvec3& toViewer,
+  const Target& target, ShadowQueue& queue, RayCount& shadowRays) const
 {
   if (!point.material->lit)
   {
-    return glm::vec3(0.0f);
+    return;
   }
   shading::HrtSurface colors = point.colors;
   colors.ambient = colors.diffuse = glm::vec3(0.0f);
-  return this->sumOfLights(point, colors, direction, shadowRays);
+  this->addLights(point, colors, toViewer, target, queue, shadowRays);
 }
 
-glm::vec3 Lighting::sumOfLights(const SurfacePoint& point, const shading::HrtSurface& colors,
-  const glm::dvec3& direction, RayCount& shadowRays) const
+void Lighting::addLights(const SurfacePoint& point, const shading::HrtSurface& colors,
+  const glm::dvec3& toViewer, const Target& target, ShadowQueue& queue, RayCount& shadowRays) const
 {
   const glm::vec3 here(0.0f);
-  const glm::vec3 normal(point.normal), toViewer(-direction);
-  glm::vec3 sum(0.0f);
+  const glm::vec3 normal(point.normal), viewer(toViewer);
   for (std::size_t i = 0; i < this->Lights.size(); ++i)
   {
-    const glm::vec3 term =
-      shading::hrtShadeLight(colors, this->lightFrom(point, i), here, normal, toViewer);
+    const glm::vec3 portion = target.weight *
+      shading::hrtShadeLight(colors, this->lightFrom(point, i), here, normal, viewer);
     if (!this->Settings.shadows)
     {
-      sum += term;
+      target.sum += portion;
       continue;
     }
     ++shadowRays.asked;
-    if (term == glm::vec3(0.0f))
+    Ray ray;
+    const Sight seen = portion == glm::vec3(0.0f)
+      ? Sight::Blocked
+      : this->sight(point, this->Scene.lights[i], ray);
+    if (seen == Sight::Open)
     {
-      ++shadowRays.answered;
+      ++shadowRays.traced;
+      queue.rays.push_back(ray);
+      queue.portions.push_back(portion);
+      queue.pixels.push_back(target.pixel);
+      continue;
     }
-    else if (!this->shadowed(point, this->Scene.lights[i], shadowRays))
+    ++shadowRays.answered;
+    if (seen == Sight::Free)
     {
-      sum += term;
+      target.sum += portion;
     }
   }
-  return sum;
 }
 
-// Every call answers or traces exactly one ray.
-bool Lighting::shadowed(
-  const SurfacePoint& point, const Light& light, RayCount& shadowRays) const
+Lighting::Sight Lighting::sight(const SurfacePoint& point, const Light& light, Ray& ray) const
 {
   const bool positional = light.kind == Light::Kind::Positional;
   const glm::dvec3 toLight =
     positional ? light.position - this->Scene.origin - point.position : -light.direction;
   if (!(glm::dot(point.geometricNormal, toLight) > 0.0))
   {
-    ++shadowRays.answered; // the viewer's side lies in the shadow of its own surface
-    return true;
+    return Sight::Blocked; // the viewer's side lies in the shadow of its own surface
   }
-  Ray ray = leave(point, toLight);
+  ray = leave(point, toLight);
   if (positional)
   {
     ray.direction = light.position - this->Scene.origin - ray.origin; // ends exactly at the light
@@ -104,12 +129,51 @@ bool Lighting::shadowed(
     ray.tMaximum = glm::dot(ray.origin - this->Eye, light.direction);
     if (!(ray.tMaximum > 0.0))
     {
-      ++shadowRays.answered;
-      return false;
+      return Sight::Free;
     }
   }
-  ++shadowRays.traced;
-  return this->Rays.occluded(ray);
+  return Sight::Open;
+}
+
+// A translucent surface of opacity a and colour C lets (1 - a) (1 - a + a C) of the light through:
+// all of it at a = 0, none at a = 1, and the more of its colour the denser it is.
+glm::vec3 Lighting::transmittance(Ray ray) const
+{
+  glm::vec3 share(1.0f);
+  for (int veil = 0; veil < kMostVeils; ++veil)
+  {
+    const Hit hit = this->Rays.intersect(ray);
+    if (!hit.valid())
+    {
+      return share;
+    }
+    const SurfacePoint point = this->Points.at(hit, ray.direction);
+    if (isTranslucent(this->Scene.parts[point.part]))
+    {
+      const float a = glm::clamp(point.opacity, 0.0f, 1.0f);
+      share *= (1.0f - a) * (1.0f - a + a * point.diffuseColor);
+    }
+    const double left = ray.tMaximum - hit.t;
+    ray = leave(point, ray.direction);
+    ray.tMaximum = left;
+  }
+  return glm::vec3(0.0f);
+}
+
+void Lighting::flush(ShadowQueue& queue, RayOrder order, std::vector<glm::vec3>& sums) const
+{
+  std::vector<std::uint8_t> blocked(queue.rays.size());
+  this->Rays.occluded(queue.rays.data(), blocked.data(), queue.rays.size(), order);
+  const bool veils = this->Settings.tintedShadows && this->AnyTranslucent;
+  for (std::size_t i = 0; i < queue.rays.size(); ++i)
+  {
+    if (!blocked[i])
+    {
+      sums[queue.pixels[i]] += veils ? queue.portions[i] * this->transmittance(queue.rays[i])
+                                     : queue.portions[i];
+    }
+  }
+  queue.clear();
 }
 
 } // namespace hrt

@@ -1,40 +1,81 @@
-// The colour of a surface point under the scene's lights: the shared Phong equations, each light
-// behind a shadow ray.
+// The colour of surface points under the scene's lights: the shared Phong equations, each light
+// behind a shadow ray. Points are shaded in bulk: what needs no ray is added to its pixel at once,
+// the rest waits in a queue whose rays are traced together.
 #pragma once
 
 #include "Rendering/Core/Tracing/Surface.h"
 #include "Rendering/Core/Tracing/Tracer.h"
 
+#include <cstdint>
 #include <vector>
 
 namespace hrt
 {
 
+// Light on its way to pixels, each portion behind a ray that must reach its light unhindered.
+struct ShadowQueue
+{
+  std::vector<Ray> rays;
+  std::vector<glm::vec3> portions;    // what the pixel gains when the ray passes
+  std::vector<std::uint32_t> pixels;  // index into the caller's sums
+
+  bool empty() const { return this->rays.empty(); }
+  void clear()
+  {
+    this->rays.clear();
+    this->portions.clear();
+    this->pixels.clear();
+  }
+};
+
 class Lighting
 {
 public:
-  // All three must outlive it.
-  Lighting(const Snapshot& snapshot, const Structure& structure, const TracerSettings& settings);
+  // All four must outlive it.
+  Lighting(const Snapshot& snapshot, const Surfaces& surfaces, const Structure& structure,
+    const TracerSettings& settings);
+
+  // What a point adds to a pixel, besides its own colour.
+  struct Target
+  {
+    std::uint32_t pixel;
+    glm::vec3 weight;
+    glm::vec3& sum; // of the pixel
+  };
 
   // Ambient and every light's diffuse and specular part; hrtUnlit where the material or the scene
-  // has no lighting. `direction`: unit, of the ray that sees the point.
-  glm::vec3 shade(
-    const SurfacePoint& point, const glm::dvec3& direction, RayCount& shadowRays) const;
+  // has no lighting. `toViewer`: unit, from the point to where it is seen from.
+  void shade(const SurfacePoint& point, const glm::dvec3& toViewer, const Target& target,
+    ShadowQueue& queue, RayCount& shadowRays) const;
 
   // The lights' specular part alone: the highlights on glass.
-  glm::vec3 highlights(
-    const SurfacePoint& point, const glm::dvec3& direction, RayCount& shadowRays) const;
+  void highlights(const SurfacePoint& point, const glm::dvec3& toViewer, const Target& target,
+    ShadowQueue& queue, RayCount& shadowRays) const;
+
+  // Traces the queue's rays and adds what passes; the queue is empty afterwards.
+  void flush(ShadowQueue& queue, RayOrder order, std::vector<glm::vec3>& sums) const;
 
 private:
-  glm::vec3 sumOfLights(const SurfacePoint& point, const shading::HrtSurface& colors,
-    const glm::dvec3& direction, RayCount& shadowRays) const;
+  void addLights(const SurfacePoint& point, const shading::HrtSurface& colors,
+    const glm::dvec3& toViewer, const Target& target, ShadowQueue& queue,
+    RayCount& shadowRays) const;
   shading::HrtLight lightFrom(const SurfacePoint& point, std::size_t index) const;
-  bool shadowed(const SurfacePoint& point, const Light& light, RayCount& shadowRays) const;
+
+  enum class Sight
+  {
+    Free,    // known without a ray
+    Blocked, // likewise
+    Open     // `ray` has to be traced
+  };
+  Sight sight(const SurfacePoint& point, const Light& light, Ray& ray) const;
+  glm::vec3 transmittance(Ray ray) const;
 
   const Snapshot& Scene;
   const Structure& Rays;
   const TracerSettings& Settings;
-  std::vector<shading::HrtLight> Lights; // those of the scene, in its order
+  const Surfaces& Points;
+  std::vector<shading::HrtLight> Lights; // positions unset: see lightFrom
+  bool AnyTranslucent = false;
   // The eye of a perspective camera, relative to the scene's origin.
   bool HasEye = false;
   glm::dvec3 Eye{ 0.0 };

@@ -1,15 +1,12 @@
-// Implements the Whitted tracer: Turner Whitted, "An Improved Illumination Model for Shaded
-// Display", Communications of the ACM 23(6), 1980. Each pixel is traced on its own by recursion and
-// in a fixed order of additions; threads share nothing but read-only data, and their counters are
-// whole numbers. The image is therefore the same, bit by bit, for any number of threads.
+// Spreads the tiles over the threads. A tile's result depends on nothing but its pixels, and the
+// counters are whole numbers: the picture is the same, bit by bit, for any number of threads.
 #include "Rendering/Core/Tracing/Tracer.h"
 
-#include "Rendering/Core/Tracing/Fresnel.h"
-#include "Rendering/Core/Tracing/Lighting.h"
-#include "Rendering/Core/Tracing/Surface.h"
+#include "Rendering/Core/Tracing/TileTracer.h"
 
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_reduce.h>
+#include <tbb/blocked_range2d.h>
+#include <tbb/enumerable_thread_specific.h>
+#include <tbb/parallel_for.h>
 
 #include <algorithm>
 
@@ -19,318 +16,237 @@ namespace hrt
 namespace
 {
 
-// A ray whose result counts less than half an 8-bit step is not traced. Where nothing is brighter
-// than 1, each such ray changes its pixel by less than this.
-constexpr double kLeastWeight = 1.0 / 512.0;
+// Pixels along a tile's side: a few hundred rays of a kind, enough to fill packets, little enough for
+// a tile's queues to stay in the cache.
+constexpr int kTile = 32;
 
-// A ray goes straight through at most so many translucent surfaces, then sees the background. Their
-// opacities would have to be below 9 % each for the rest to weigh more than kLeastWeight.
-constexpr int kMostLayers = 64;
+// Pixels along a side of the blocks whose rays are neighbours in a stream: 16 rays, one packet.
+constexpr int kBlock = 4;
 
-// How a ray came about.
-struct Path
+// A ray that meets parts hidden from the camera, or culled sides, goes on behind them; not for ever.
+constexpr int kMostHidden = 1024;
+
+using TileRange = tbb::blocked_range2d<int>;
+
+// Calls work(left, bottom, width, height, local) for every tile; `local` is the thread's own.
+template <class Local, class Work>
+void forEachTile(const Camera& camera, Local& locals, Work work)
 {
-  RayCount RayCounters::*kind = &RayCounters::reflection;
-  int bounces = 1;     // reflections and refractions so far, this one included
-  int layers = 0;      // translucent surfaces passed since
-  double weight = 1.0; // bound of its share in the pixel
-};
-
-float largest(const glm::vec3& v)
-{
-  return std::max({ v.x, v.y, v.z });
-}
-
-// What becomes of a ray at a glass surface.
-struct Boundary
-{
-  glm::dvec3 reflected;
-  glm::dvec3 refracted{ 0.0 };
-  double reflectance = 1.0; // 1: nothing is refracted
-};
-
-// An interpolated normal may be turned away from the viewer where the face is not.
-glm::dvec3 normalTowardsViewer(const SurfacePoint& point, const glm::dvec3& direction)
-{
-  return glm::dot(point.opticalNormal, direction) < 0.0 ? point.opticalNormal
-                                                        : point.geometricNormal;
-}
-
-// By the shading normal, or by the face's own where that would lead below the surface.
-glm::dvec3 mirrorDirection(const SurfacePoint& point, const glm::dvec3& direction)
-{
-  const glm::dvec3 smooth = reflected(direction, normalTowardsViewer(point, direction));
-  return glm::dot(smooth, point.geometricNormal) > 0.0
-    ? smooth
-    : reflected(direction, point.geometricNormal);
-}
-
-Boundary boundaryAt(const SurfacePoint& point, const glm::dvec3& direction)
-{
-  Boundary boundary;
-  boundary.reflected = mirrorDirection(point, direction);
-  const double index = point.material->indexOfRefraction;
-  const double eta = point.outside ? 1.0 / index : index;
-  glm::dvec3 normal = normalTowardsViewer(point, direction);
-  if (!refracted(direction, normal, eta, boundary.refracted))
-  {
-    return boundary;
-  }
-  if (!(glm::dot(boundary.refracted, point.geometricNormal) < 0.0))
-  {
-    normal = point.geometricNormal; // the smooth direction does not cross the face
-    if (!refracted(direction, normal, eta, boundary.refracted))
+  const int columns = (camera.width + kTile - 1) / kTile;
+  const int rows = (camera.height + kTile - 1) / kTile;
+  tbb::parallel_for(TileRange(0, rows, 1, 0, columns, 1), [&](const TileRange& range) {
+    auto& local = locals.local();
+    for (int row = range.rows().begin(); row < range.rows().end(); ++row)
     {
-      return boundary;
+      for (int column = range.cols().begin(); column < range.cols().end(); ++column)
+      {
+        const int left = column * kTile, bottom = row * kTile;
+        work(left, bottom, std::min(kTile, camera.width - left),
+          std::min(kTile, camera.height - bottom), local);
+      }
     }
-  }
-  boundary.reflectance = fresnelReflectance(-glm::dot(direction, normal), eta);
-  return boundary;
+  });
 }
 
-// Traces the rays of one pixel after the other; one per task.
-class Whitted
+SecondaryResult traceTiles(const TracedFrame& frame, TileTracer::Wanted wanted,
+  const std::uint32_t* ids, SecondaryImage& image)
+{
+  struct Local
+  {
+    explicit Local(const TracedFrame& f)
+      : tracer(f)
+    {
+    }
+    TileTracer tracer;
+    SecondaryResult result;
+  };
+  tbb::enumerable_thread_specific<Local> locals([&frame] { return Local(frame); });
+  forEachTile(frame.snapshot.camera, locals,
+    [&](int left, int bottom, int width, int height, Local& local) {
+      local.tracer.trace(left, bottom, width, height, wanted, ids, image, local.result);
+    });
+  SecondaryResult sum;
+  for (const Local& local : locals)
+  {
+    sum.rays += local.result.rays;
+    sum.pixels += local.result.pixels;
+    sum.invalidIds += local.result.invalidIds;
+  }
+  return sum;
+}
+
+void resize(SecondaryImage& image, const Camera& camera, const glm::vec4& value)
+{
+  image.width = camera.width;
+  image.height = camera.height;
+  image.pixels.assign(std::size_t(camera.width) * camera.height, value);
+}
+
+// Primary rays between the clip planes.
+class PrimaryCaster
 {
 public:
-  Whitted(const Snapshot& snapshot, const Structure& structure, const TracerSettings& settings,
-    const Surfaces& surfaces, const Lighting& lighting, RayCounters& counters)
-    : Scene(snapshot)
-    , Rays(structure)
-    , Settings(settings)
-    , Points(surfaces)
-    , Lights(lighting)
-    , Counters(counters)
+  PrimaryCaster(const TracedFrame& frame, PrimaryHits& hits)
+    : Frame(frame)
+    , Hits(hits)
+    , ToClip(frame.snapshot.camera.viewToClip * frame.snapshot.camera.worldToView)
   {
+    this->ToClip[3] = this->ToClip * glm::dvec4(frame.snapshot.origin, 1.0);
   }
 
-  bool isMirror(const Material& material) const
+  // A ray cut by the near and the far plane; false when nothing is left of it.
+  bool clip(Ray& ray) const
   {
-    return material.isMirror() && this->Settings.reflections && !this->isGlass(material);
-  }
-  bool isGlass(const Material& material) const
-  {
-    return material.isGlass() && this->Settings.refractions;
-  }
-
-  // The pixel of the secondary image for a surface that is a mirror or glass and is seen directly.
-  glm::vec4 pixel(const SurfacePoint& point, const glm::dvec3& direction)
-  {
-    Path eye;
-    eye.bounces = 0;
-    if (this->isGlass(*point.material))
+    const glm::dvec4 from = this->ToClip * glm::dvec4(ray.origin, 1.0);
+    const glm::dvec4 along = this->ToClip * glm::dvec4(ray.direction, 0.0);
+    double first = 0.0, last = ray.tMaximum;
+    // Inside, w + z and w - z are positive; each is linear along the ray.
+    for (const double sign : { 1.0, -1.0 })
     {
-      return glm::vec4(this->glass(point, direction, eye), 0.0f);
+      const double start = from.w + sign * from.z;
+      const double slope = along.w + sign * along.z;
+      if (slope > 0.0)
+      {
+        first = std::max(first, -start / slope);
+      }
+      else if (slope < 0.0)
+      {
+        last = std::min(last, -start / slope);
+      }
+      else if (start < 0.0)
+      {
+        return false;
+      }
     }
-    const float share = point.material->reflectance;
-    return glm::vec4(share * this->mirrored(point, direction, eye), 1.0f - share);
+    ray.origin += first * ray.direction;
+    ray.tMaximum = last - first;
+    return first < last;
+  }
+
+  void cast(int left, int bottom, int width, int height, RayCount& count)
+  {
+    this->Rays.clear();
+    this->Pixels.clear();
+    for (int by = 0; by < height; by += kBlock)
+    {
+      for (int bx = 0; bx < width; bx += kBlock)
+      {
+        for (int y = by; y < std::min(by + kBlock, height); ++y)
+        {
+          for (int x = bx; x < std::min(bx + kBlock, width); ++x)
+          {
+            this->add(left + x, bottom + y, count);
+          }
+        }
+      }
+    }
+    this->Found.resize(this->Rays.size());
+    this->Frame.structure.intersect(
+      this->Rays.data(), this->Found.data(), this->Rays.size(), RayOrder::Coherent);
+    for (std::size_t i = 0; i < this->Rays.size(); ++i)
+    {
+      this->store(this->Pixels[i], this->Rays[i], this->Found[i], count);
+    }
   }
 
 private:
-  glm::vec3 background(const glm::dvec3& direction) const
+  void add(int column, int row, RayCount& count)
   {
-    const Background& b = this->Scene.background;
-    const float height =
-      0.5f * (1.0f + static_cast<float>(glm::dot(glm::normalize(direction), glm::dvec3(b.up))));
-    return glm::mix(b.bottom, b.top, glm::clamp(height, 0.0f, 1.0f));
-  }
-
-  // What the ray's path sees, or nothing when the ray is too deep or weighs too little.
-  glm::vec3 follow(const Ray& ray, const Path& path)
-  {
-    RayCount& count = this->Counters.*path.kind;
     ++count.asked;
-    if (path.bounces > this->Settings.maximumDepth || path.weight < kLeastWeight)
+    Ray ray = this->Frame.primaryRay(column, row);
+    if (this->clip(ray))
+    {
+      ++count.traced;
+      this->Rays.push_back(ray);
+      this->Pixels.push_back(std::size_t(row) * this->Frame.snapshot.camera.width + column);
+    }
+    else
     {
       ++count.answered;
-      return glm::vec3(0.0f);
     }
-    ++count.traced;
-    const Hit hit = this->Rays.intersect(ray);
-    return hit.valid() ? this->seen(this->Points.at(hit, ray.direction), ray.direction, path)
-                       : this->background(ray.direction);
   }
 
-  // The colour of a surface that a ray has met; all directions from here on are unit vectors.
-  glm::vec3 seen(const SurfacePoint& point, const glm::dvec3& direction, const Path& path)
+  bool shown(const SurfacePoint& point) const
   {
-    if (this->isGlass(*point.material))
-    {
-      return this->glass(point, direction, path);
-    }
-    glm::vec3 color = this->Lights.shade(point, direction, this->Counters.shadow);
-    if (this->isMirror(*point.material))
-    {
-      Path opaque = path;
-      opaque.weight *= point.opacity;
-      color =
-        glm::mix(color, this->mirrored(point, direction, opaque), point.material->reflectance);
-    }
-    if (point.opacity >= 1.0f)
-    {
-      return color;
-    }
-    return point.opacity * color + (1.0f - point.opacity) * this->behind(point, direction, path);
+    const Part& part = this->Frame.snapshot.parts[point.part];
+    const bool culled = point.frontSide ? part.material.cullFront : part.material.cullBack;
+    return part.visibleToCamera && !culled;
   }
 
-  // What lies straight behind a translucent surface. Counted with the ray that it prolongs.
-  glm::vec3 behind(const SurfacePoint& point, const glm::dvec3& direction, Path path)
+  void store(std::size_t pixel, Ray ray, Hit hit, RayCount& count)
   {
-    if (++path.layers > kMostLayers)
+    for (int passed = 0; hit.valid() && passed < kMostHidden; ++passed)
     {
-      return this->background(direction);
-    }
-    path.weight *= 1.0 - point.opacity;
-    return this->follow(leave(point, direction), path);
-  }
-
-  // The mirror image at a point, not yet multiplied by the reflectance.
-  glm::vec3 mirrored(const SurfacePoint& point, const glm::dvec3& direction, const Path& path)
-  {
-    return this->follow(leave(point, mirrorDirection(point, direction)),
-      bounce(path, &RayCounters::reflection, point.material->reflectance));
-  }
-
-  // Without reflections the light that glass would reflect goes the way of the refracted; where
-  // everything is reflected nothing is left.
-  glm::vec3 glass(const SurfacePoint& point, const glm::dvec3& direction, const Path& path)
-  {
-    const Boundary boundary = boundaryAt(point, direction);
-    glm::vec3 color = this->Lights.highlights(point, direction, this->Counters.shadow);
-    if (this->Settings.reflections)
-    {
-      color += static_cast<float>(boundary.reflectance) *
-        this->follow(leave(point, boundary.reflected),
-          bounce(path, &RayCounters::reflection, boundary.reflectance));
-    }
-    if (boundary.reflectance < 1.0)
-    {
-      const double share = this->Settings.reflections ? 1.0 - boundary.reflectance : 1.0;
-      const glm::vec3 tint = static_cast<float>(share) * point.diffuseColor;
-      color += tint *
-        this->follow(leave(point, boundary.refracted),
-          bounce(path, &RayCounters::refraction, largest(tint)));
-    }
-    return color;
-  }
-
-  static Path bounce(const Path& path, RayCount RayCounters::*kind, double share)
-  {
-    return { kind, path.bounces + 1, 0, path.weight * share };
-  }
-
-  const Snapshot& Scene;
-  const Structure& Rays;
-  const TracerSettings& Settings;
-  const Surfaces& Points;
-  const Lighting& Lights;
-  RayCounters& Counters;
-};
-
-void add(RayCount& to, const RayCount& from)
-{
-  to.asked += from.asked;
-  to.answered += from.answered;
-  to.traced += from.traced;
-}
-
-SecondaryResult sum(SecondaryResult a, const SecondaryResult& b)
-{
-  add(a.rays.reflection, b.rays.reflection);
-  add(a.rays.refraction, b.rays.refraction);
-  add(a.rays.shadow, b.rays.shadow);
-  a.pixels += b.pixels;
-  a.invalidIds += b.invalidIds;
-  return a;
-}
-
-// The primary ray through a pixel's centre.
-Ray primaryRay(const CameraRays& rays, const Camera& camera, int column, int row)
-{
-  const double x = (column + 0.5) / camera.width * 2.0 - 1.0;
-  const double y = (row + 0.5) / camera.height * 2.0 - 1.0;
-  Ray ray;
-  ray.origin = rays.origin(x, y);
-  ray.direction = glm::normalize(rays.direction(x, y));
-  return ray;
-}
-
-// Everything that the pixels share.
-struct Frame
-{
-  const Snapshot& snapshot;
-  const Structure& structure;
-  const TracerSettings& settings;
-  const std::uint32_t* ids;
-  SecondaryImage& image;
-  Surfaces surfaces;
-  Lighting lighting;
-  CameraRays rays;
-
-  void traceRow(int row, SecondaryResult& result) const
-  {
-    Whitted whitted(this->snapshot, this->structure, this->settings, this->surfaces,
-      this->lighting, result.rays);
-    for (int column = 0; column < this->image.width; ++column)
-    {
-      const std::size_t pixel = std::size_t(row) * this->image.width + column;
-      this->tracePixel(whitted, pixel, column, row, result);
+      const SurfacePoint point = this->Frame.surfaces.at(hit, ray.direction);
+      if (this->shown(point))
+      {
+        const glm::dvec4 clip = this->ToClip * glm::dvec4(point.position, 1.0);
+        this->Hits.ids[pixel] = hit.triangle + 1;
+        this->Hits.clipDepths[pixel] = glm::clamp(clip.z / clip.w, -1.0, 1.0);
+        return;
+      }
+      const double left = ray.tMaximum - hit.t;
+      ray = leave(point, ray.direction);
+      ray.tMaximum = left;
+      ++count.asked;
+      ++count.traced;
+      hit = this->Frame.structure.intersect(ray);
     }
   }
 
-  void tracePixel(
-    Whitted& whitted, std::size_t pixel, int column, int row, SecondaryResult& result) const
-  {
-    if (this->ids[pixel] == 0)
-    {
-      return;
-    }
-    const TriangleId id = this->ids[pixel] - 1;
-    if (id >= this->snapshot.triangleCount)
-    {
-      ++result.invalidIds;
-      return;
-    }
-    const Material& material = this->snapshot.parts[this->snapshot.partOf(id)].material;
-    if (!whitted.isMirror(material) && !whitted.isGlass(material))
-    {
-      return;
-    }
-    const Ray ray = primaryRay(this->rays, this->snapshot.camera, column, row);
-    Hit hit;
-    if (this->surfaces.primaryHit(id, ray, hit))
-    {
-      ++result.pixels;
-      this->image.pixels[pixel] =
-        whitted.pixel(this->surfaces.at(hit, ray.direction), ray.direction);
-    }
-  }
+  const TracedFrame& Frame;
+  PrimaryHits& Hits;
+  glm::dmat4 ToClip; // from coordinates relative to the snapshot's origin
+  std::vector<Ray> Rays;
+  std::vector<std::size_t> Pixels;
+  std::vector<Hit> Found;
 };
 
 } // namespace
 
+RayCounters castPrimaryRays(
+  const Snapshot& snapshot, const Structure& structure, PrimaryHits& hits)
+{
+  const std::size_t pixels = std::size_t(snapshot.camera.width) * snapshot.camera.height;
+  hits.ids.assign(pixels, 0);
+  hits.clipDepths.assign(pixels, 1.0);
+  const TracerSettings settings;
+  const TracedFrame frame(snapshot, structure, settings);
+  struct Local
+  {
+    PrimaryCaster caster;
+    RayCount count;
+  };
+  tbb::enumerable_thread_specific<Local> locals(
+    [&] { return Local{ PrimaryCaster(frame, hits), {} }; });
+  forEachTile(snapshot.camera, locals,
+    [](int left, int bottom, int width, int height, Local& local) {
+      local.caster.cast(left, bottom, width, height, local.count);
+    });
+  RayCounters sum;
+  for (const Local& local : locals)
+  {
+    sum.primary += local.count;
+  }
+  return sum;
+}
+
 SecondaryResult traceSecondary(const Snapshot& snapshot, const Structure& structure,
   const TracerSettings& settings, const std::uint32_t* ids, SecondaryImage& image)
 {
-  image.width = snapshot.camera.width;
-  image.height = snapshot.camera.height;
-  image.pixels.assign(
-    std::size_t(image.width) * image.height, glm::vec4(0.0f, 0.0f, 0.0f, 1.0f));
-  const Frame frame{ snapshot, structure, settings, ids, image, Surfaces(snapshot),
-    Lighting(snapshot, structure, settings), snapshot.camera.worldRays(snapshot.origin) };
-  if (settings.maximumDepth <= 0)
-  {
-    return {};
-  }
-  return tbb::parallel_reduce(
-    tbb::blocked_range<int>(0, image.height), SecondaryResult{},
-    [&frame](const tbb::blocked_range<int>& rows, SecondaryResult result) {
-      for (int row = rows.begin(); row < rows.end(); ++row)
-      {
-        frame.traceRow(row, result);
-      }
-      return result;
-    },
-    sum);
+  resize(image, snapshot.camera, glm::vec4(0.0f, 0.0f, 0.0f, 1.0f));
+  return settings.maximumDepth <= 0
+    ? SecondaryResult()
+    : traceTiles(TracedFrame(snapshot, structure, settings), TileTracer::Wanted::SecondaryOnly,
+        ids, image);
+}
+
+SecondaryResult traceImage(const Snapshot& snapshot, const Structure& structure,
+  const TracerSettings& settings, const std::uint32_t* ids, SecondaryImage& image)
+{
+  resize(image, snapshot.camera, glm::vec4(0.0f));
+  return traceTiles(
+    TracedFrame(snapshot, structure, settings), TileTracer::Wanted::Everything, ids, image);
 }
 
 } // namespace hrt

@@ -1,7 +1,7 @@
-// The Whitted tracer for secondary rays: what a mirror shows and what is seen through glass. It
-// starts where the rasterised primary image ends, from a pixel and the triangle visible there, and
-// returns what has to be composited onto that pixel. Shading is the shared source (Shading.h), so a
-// surface looks the same directly and in a mirror.
+// The ray tracer behind the pass: primary visibility by rays, what mirrors and glass show, and whole
+// pictures without a rasteriser (the paper's traditional ray tracer). All three share one wavefront
+// engine (TileTracer.h) and one shading source (Shading.h), so that a surface looks the same directly
+// and in a mirror.
 #pragma once
 
 #include "Rendering/Core/Snapshot.h"
@@ -15,8 +15,9 @@ namespace hrt
 
 struct TracerSettings
 {
-  int maximumDepth = 3;     // bounces; a ray that would be the (n+1)th adds nothing
-  bool shadows = true;      // shadow rays at the hits
+  int maximumDepth = 3;       // bounces; a ray that would be the (n+1)th adds nothing
+  bool shadows = true;        // shadow rays at the hits
+  bool tintedShadows = false; // translucent surfaces take their share of a shadow ray's light
   bool reflections = true;
   bool refractions = true;
 };
@@ -30,14 +31,44 @@ struct RayCount
   // rays beyond the maximum depth or with a weight below 1/512 of the pixel.
   std::uint64_t answered = 0;
   std::uint64_t traced = 0;
+
+  RayCount& operator+=(const RayCount& o)
+  {
+    this->asked += o.asked;
+    this->answered += o.answered;
+    this->traced += o.traced;
+    return *this;
+  }
 };
 
 struct RayCounters
 {
+  RayCount primary;
   RayCount reflection;
   RayCount refraction;
   RayCount shadow;
+
+  RayCounters& operator+=(const RayCounters& o)
+  {
+    this->primary += o.primary;
+    this->reflection += o.reflection;
+    this->refraction += o.refraction;
+    this->shadow += o.shadow;
+    return *this;
+  }
 };
+
+// What every pixel of the camera's viewport shows, row 0 at the bottom.
+struct PrimaryHits
+{
+  std::vector<std::uint32_t> ids;   // triangle numbers plus one; 0: no hit
+  std::vector<double> clipDepths;   // z / w in OpenGL's clip space, -1 near to 1 far; 1: no hit
+};
+
+// Primary visibility by rays through the pixels' centres: the nearest triangle, between the near and
+// the far plane, of a part that the camera sees, on a side that is not culled.
+RayCounters castPrimaryRays(
+  const Snapshot& snapshot, const Structure& structure, PrimaryHits& hits);
 
 // The secondary image: for each pixel of the camera's viewport, row 0 at the bottom, the radiance
 // to add (rgb) and the share of the primary colour that stays (a). Pixels without mirror or glass
@@ -49,17 +80,23 @@ struct SecondaryImage
   std::vector<glm::vec4> pixels;
 };
 
+struct SecondaryResult
+{
+  RayCounters rays;
+  std::uint64_t pixels = 0;     // that show a mirror or glass
+  std::uint64_t invalidIds = 0;
+};
+
 // Traces reflection and refraction for every pixel whose triangle belongs to a mirror or to glass.
 // `ids`: width x height triangle numbers plus one, as in the object intersection buffer (0: no
 // hit); ids out of range are treated as no hit and counted in `invalidIds`. A material that is both
 // mirror and glass is glass. The result does not depend on the number of threads.
-struct SecondaryResult
-{
-  RayCounters rays;
-  std::uint64_t pixels = 0;     // with at least one secondary ray
-  std::uint64_t invalidIds = 0;
-};
 SecondaryResult traceSecondary(const Snapshot& snapshot, const Structure& structure,
+  const TracerSettings& settings, const std::uint32_t* ids, SecondaryImage& image);
+
+// The whole picture: the colour of every pixel with a valid id (a = 1), its shadows, mirrors and
+// glass; (0, 0, 0, 0) elsewhere. Otherwise as traceSecondary.
+SecondaryResult traceImage(const Snapshot& snapshot, const Structure& structure,
   const TracerSettings& settings, const std::uint32_t* ids, SecondaryImage& image);
 
 } // namespace hrt

@@ -46,8 +46,15 @@ struct Floor
     ray.origin = { x, 0, 0.5 };
     Hit hit;
     EXPECT_TRUE(primaryHit(scene, 0, ray, hit) && hit.valid());
-    const SurfacePoint p = Surfaces(scene).at(hit, ray.direction);
-    return Lighting(scene, structure, settings).shade(p, ray.direction, rays).r;
+    const Surfaces surfaces(scene);
+    const Lighting lighting(scene, surfaces, structure, settings);
+    std::vector<glm::vec3> sums(1, glm::vec3(0.0f));
+    ShadowQueue queue;
+    lighting.shade(surfaces.at(hit, ray.direction), -ray.direction,
+      { 0, glm::vec3(1.0f), sums[0] }, queue, rays);
+    lighting.flush(queue, RayOrder::Coherent, sums);
+    EXPECT_TRUE(queue.empty());
+    return sums[0].r;
   }
 };
 
@@ -118,6 +125,29 @@ TEST(Lighting, UnlitAndUnlightedShowTheirColour)
   EXPECT_EQ(floor.brightnessAt(0.5), 0.25f); // in shadow: ambient
   floor.scene.parts[0].material.lit = false;
   EXPECT_EQ(floor.brightnessAt(0.5), 0.75f);
+}
+
+// A veil of opacity a and colour C lets (1 - a) (1 - a + a C) through, each veil anew.
+TEST(Lighting, TranslucentSurfacesTintWhenAsked)
+{
+  Floor floor(3.0);
+  floor.addLight(Light::Kind::Directional, { 0, 0, 5 });
+  Part& veil = floor.scene.parts[1];
+  veil.castsShadow = false;
+  veil.material.front.opacity = veil.material.back.opacity = 0.25f;
+  veil.material.front.diffuseColor = veil.material.back.diffuseColor = { 0.5f, 1.0f, 1.0f };
+  floor.structure.update(floor.scene);
+  EXPECT_EQ(floor.brightnessAt(0.5), 1.0f) << "not asked for";
+  floor.settings.tintedShadows = true;
+  const float once = 0.75f * (0.75f + 0.25f * 0.5f);
+  EXPECT_FLOAT_EQ(floor.brightnessAt(0.5), once);
+  EXPECT_EQ(floor.brightnessAt(2.0), 1.0f) << "beside the veil";
+  scenes::addPart(floor.scene, floor.scene.parts[1].geometry,
+    glm::translate(glm::dmat4(1.0), { 0, 0, 4 }));
+  floor.scene.parts[2].castsShadow = false;
+  floor.scene.parts[2].material = floor.scene.parts[1].material;
+  floor.structure.update(floor.scene);
+  EXPECT_FLOAT_EQ(floor.brightnessAt(0.5), once * once);
 }
 
 TEST(Lighting, SpotsLightTheirCone)

@@ -1,0 +1,292 @@
+// Implements the Whitted tracer in wavefront form: Turner Whitted, "An Improved Illumination Model for
+// Shaded Display", Communications of the ACM 23(6), 1980.
+#include "Rendering/Core/Tracing/TileTracer.h"
+
+#include "Rendering/Core/Tracing/Optics.h"
+
+#include <algorithm>
+
+namespace hrt
+{
+
+namespace
+{
+
+// A ray whose result counts less than half an 8-bit step is not traced. Where nothing is brighter
+// than 1, each such ray changes its pixel by less than this.
+constexpr float kLeastWeight = 1.0f / 512.0f;
+
+// A ray goes straight through at most so many translucent surfaces, then sees the background. Their
+// opacities would have to be below 9 % each for the rest to weigh more than kLeastWeight.
+constexpr int kMostLayers = 64;
+
+// Pixels along a side of the blocks whose rays are neighbours in a stream: 16 rays, one packet.
+constexpr int kBlock = 4;
+
+float largest(const glm::vec3& v)
+{
+  return std::max({ v.x, v.y, v.z });
+}
+
+} // namespace
+
+TracedFrame::TracedFrame(
+  const Snapshot& s, const Structure& rayStructure, const TracerSettings& tracerSettings)
+  : snapshot(s)
+  , structure(rayStructure)
+  , settings(tracerSettings)
+  , surfaces(s)
+  , lighting(s, surfaces, rayStructure, tracerSettings)
+  , rays(s.camera.worldRays(s.origin))
+  , viewer(glm::dvec3(glm::inverse(s.camera.worldToView)[3]) - s.origin)
+{
+}
+
+bool TracedFrame::isGlass(const Material& material) const
+{
+  return material.isGlass() && this->settings.refractions && this->settings.maximumDepth > 0;
+}
+
+bool TracedFrame::isMirror(const Material& material) const
+{
+  return material.isMirror() && this->settings.reflections && this->settings.maximumDepth > 0 &&
+    !this->isGlass(material);
+}
+
+Ray TracedFrame::primaryRay(int column, int row) const
+{
+  const double x = (column + 0.5) / this->snapshot.camera.width * 2.0 - 1.0;
+  const double y = (row + 0.5) / this->snapshot.camera.height * 2.0 - 1.0;
+  Ray ray;
+  ray.origin = this->rays.origin(x, y);
+  ray.direction = glm::normalize(this->rays.direction(x, y));
+  return ray;
+}
+
+TileTracer::TileTracer(const TracedFrame& frame)
+  : Frame(frame)
+{
+}
+
+void TileTracer::trace(int left, int bottom, int width, int height, Wanted wanted,
+  const std::uint32_t* ids, SecondaryImage& image, SecondaryResult& result)
+{
+  const std::size_t pixels = std::size_t(width) * height;
+  this->Sums.assign(pixels, glm::vec3(0.0f));
+  // No hit: nothing to add. In the whole picture alpha 0 says so, in the secondary image the
+  // primary colour stays.
+  this->Alphas.assign(pixels, wanted == Wanted::Everything ? 0.0f : 1.0f);
+  this->Counters = RayCounters();
+  const auto pixelAt = [&](std::size_t i) {
+    return (bottom + i / width) * image.width + left + i % width;
+  };
+  for (int by = 0; by < height; by += kBlock)
+  {
+    for (int bx = 0; bx < width; bx += kBlock)
+    {
+      for (int y = by; y < std::min(by + kBlock, height); ++y)
+      {
+        for (int x = bx; x < std::min(bx + kBlock, width); ++x)
+        {
+          const std::size_t i = std::size_t(y) * width + x;
+          this->start(static_cast<std::uint32_t>(i), left + x, bottom + y, ids[pixelAt(i)],
+            wanted, result);
+        }
+      }
+    }
+  }
+  // Neighbours' first shadow and mirror rays run side by side; later ones scatter.
+  RayOrder order = RayOrder::Coherent;
+  this->Frame.lighting.flush(this->Shadows, order, this->Sums);
+  while (!this->Reflected.rays.empty() || !this->Refracted.rays.empty())
+  {
+    std::swap(this->NowReflected, this->Reflected);
+    std::swap(this->NowRefracted, this->Refracted);
+    this->follow(this->NowReflected, this->Reflected, this->Counters.reflection, order);
+    this->follow(this->NowRefracted, this->Refracted, this->Counters.refraction,
+      RayOrder::Incoherent);
+    this->Frame.lighting.flush(this->Shadows, order, this->Sums);
+    order = RayOrder::Incoherent;
+  }
+  for (std::size_t i = 0; i < pixels; ++i)
+  {
+    image.pixels[pixelAt(i)] = glm::vec4(this->Sums[i], this->Alphas[i]);
+  }
+  result.rays += this->Counters;
+}
+
+// The surface that a pixel shows, as the visibility engine has found it.
+void TileTracer::start(std::uint32_t pixel, int column, int row, std::uint32_t id, Wanted wanted,
+  SecondaryResult& result)
+{
+  if (id == 0)
+  {
+    return;
+  }
+  const TriangleId triangle = id - 1;
+  const Snapshot& snapshot = this->Frame.snapshot;
+  if (triangle >= snapshot.triangleCount)
+  {
+    ++result.invalidIds;
+    return;
+  }
+  const Material& material = snapshot.parts[snapshot.partOf(triangle)].material;
+  const bool glass = this->Frame.isGlass(material);
+  const bool mirror = this->Frame.isMirror(material);
+  if (wanted == Wanted::SecondaryOnly && !glass && !mirror)
+  {
+    return;
+  }
+  const Ray ray = this->Frame.primaryRay(column, row);
+  Hit hit;
+  if (!this->Frame.surfaces.primaryHit(triangle, ray, hit))
+  {
+    return;
+  }
+  result.pixels += glass || mirror ? 1 : 0;
+  const SurfacePoint point = this->Frame.surfaces.at(hit, ray.direction);
+  Path eye;
+  eye.pixel = pixel;
+  if (wanted == Wanted::SecondaryOnly && mirror)
+  {
+    this->Alphas[pixel] = 1.0f - material.reflectance;
+    this->startMirror(point, ray.direction, eye);
+    return;
+  }
+  this->Alphas[pixel] = wanted == Wanted::Everything ? 1.0f : 0.0f;
+  // As VTK does for every projection, the viewer of a directly seen surface is taken to be at the
+  // view coordinates' origin.
+  const glm::dvec3 toViewer = glm::normalize(this->Frame.viewer - point.position);
+  this->arrive(point, ray.direction, toViewer, eye, this->Refracted);
+}
+
+void TileTracer::startMirror(
+  const SurfacePoint& point, const glm::dvec3& direction, const Path& path)
+{
+  this->spawn(this->Reflected, leave(point, mirrorDirection(point, direction)), path,
+    glm::vec3(point.material->reflectance));
+}
+
+void TileTracer::spawn(
+  PathQueue& queue, const Ray& ray, const Path& path, const glm::vec3& share)
+{
+  Path next;
+  next.pixel = path.pixel;
+  next.weight = path.weight * share;
+  next.bounces = path.bounces + 1;
+  queue.rays.push_back(ray);
+  queue.paths.push_back(next);
+}
+
+// Takes the queue's rays one generation on. Rays that are too deep or weigh too little are answered
+// with nothing.
+void TileTracer::follow(
+  PathQueue& queue, PathQueue& sameKind, RayCount& count, RayOrder order)
+{
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < queue.rays.size(); ++i)
+  {
+    ++count.asked;
+    if (queue.paths[i].bounces > this->Frame.settings.maximumDepth ||
+      largest(queue.paths[i].weight) < kLeastWeight)
+    {
+      ++count.answered;
+      continue;
+    }
+    ++count.traced;
+    queue.rays[kept] = queue.rays[i];
+    queue.paths[kept] = queue.paths[i];
+    ++kept;
+  }
+  this->Hits.resize(kept);
+  this->Frame.structure.intersect(queue.rays.data(), this->Hits.data(), kept, order);
+  for (std::size_t i = 0; i < kept; ++i)
+  {
+    const Path& path = queue.paths[i];
+    const glm::dvec3 direction = queue.rays[i].direction;
+    if (!this->Hits[i].valid())
+    {
+      this->Sums[path.pixel] += path.weight * this->background(direction);
+      continue;
+    }
+    this->arrive(this->Frame.surfaces.at(this->Hits[i], direction), direction, -direction, path,
+      sameKind);
+  }
+  queue.clear();
+}
+
+// Adds a surface's own light and sends on the rays that it asks for.
+void TileTracer::arrive(const SurfacePoint& point, const glm::dvec3& direction,
+  const glm::dvec3& toViewer, const Path& path, PathQueue& sameKind)
+{
+  if (this->Frame.isGlass(*point.material))
+  {
+    this->arriveAtGlass(point, direction, toViewer, path);
+    return;
+  }
+  // What is seen directly is never translucent: VTK draws such actors itself.
+  const float opacity = path.bounces == 0 ? 1.0f : point.opacity;
+  const float mirror =
+    this->Frame.isMirror(*point.material) ? point.material->reflectance : 0.0f;
+  const Lighting::Target target{ path.pixel, path.weight * (opacity * (1.0f - mirror)),
+    this->Sums[path.pixel] };
+  this->Frame.lighting.shade(point, toViewer, target, this->Shadows, this->Counters.shadow);
+  if (mirror > 0.0f)
+  {
+    Path opaque = path;
+    opaque.weight *= opacity;
+    this->startMirror(point, direction, opaque);
+  }
+  if (opacity < 1.0f)
+  {
+    this->passThrough(point, direction, path, sameKind);
+  }
+}
+
+// Straight on behind a translucent surface: the same ray prolonged, no new bounce.
+void TileTracer::passThrough(const SurfacePoint& point, const glm::dvec3& direction,
+  const Path& path, PathQueue& sameKind)
+{
+  Path next = path;
+  next.weight *= 1.0f - point.opacity;
+  if (++next.layers > kMostLayers)
+  {
+    this->Sums[path.pixel] += next.weight * this->background(direction);
+    return;
+  }
+  sameKind.rays.push_back(leave(point, direction));
+  sameKind.paths.push_back(next);
+}
+
+// Without reflections the light that glass would reflect goes the way of the refracted; where
+// everything is reflected nothing is left.
+void TileTracer::arriveAtGlass(const SurfacePoint& point, const glm::dvec3& direction,
+  const glm::dvec3& toViewer, const Path& path)
+{
+  const Boundary boundary = boundaryAt(point, direction);
+  this->Frame.lighting.highlights(point, toViewer,
+    { path.pixel, path.weight, this->Sums[path.pixel] }, this->Shadows, this->Counters.shadow);
+  const bool reflections = this->Frame.settings.reflections;
+  const auto reflectance = static_cast<float>(boundary.reflectance);
+  if (reflections)
+  {
+    this->spawn(
+      this->Reflected, leave(point, boundary.reflected), path, glm::vec3(reflectance));
+  }
+  if (boundary.reflectance < 1.0)
+  {
+    const float share = reflections ? 1.0f - reflectance : 1.0f;
+    this->spawn(
+      this->Refracted, leave(point, boundary.refracted), path, share * point.diffuseColor);
+  }
+}
+
+glm::vec3 TileTracer::background(const glm::dvec3& direction) const
+{
+  const Background& b = this->Frame.snapshot.background;
+  const float height =
+    0.5f * (1.0f + static_cast<float>(glm::dot(glm::normalize(direction), glm::dvec3(b.up))));
+  return glm::mix(b.bottom, b.top, glm::clamp(height, 0.0f, 1.0f));
+}
+
+} // namespace hrt
