@@ -5,7 +5,7 @@ the input data; positions are intersected in double precision.
 """
 
 import numpy as np
-from common import output_path, save, window_of
+from common import output_path, window_of
 from vtkhybrid import buffer, vtkHybridRayTracingPass
 from vtkmodules.util.numpy_support import numpy_to_vtk
 from vtkmodules.vtkCommonDataModel import vtkImageData

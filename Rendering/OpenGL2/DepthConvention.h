@@ -21,6 +21,11 @@ struct DepthConvention
   static DepthConvention ofCurrentContext();
 
   float clearDepth() const { return this->reversed ? 0.0f : 1.0f; }
+  // The stored depth of a clip-space z / w.
+  float storedDepth(double z) const
+  {
+    return static_cast<float>(this->reversed ? 0.5 - 0.5 * z : 0.5 + 0.5 * z);
+  }
   GLenum compare() const { return this->reversed ? GL_GREATER : GL_LESS; }
 
   // The matrix to draw with, from one for OpenGL's clip space (z from -w to w).

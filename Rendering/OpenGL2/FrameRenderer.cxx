@@ -7,11 +7,34 @@
 
 #include <chrono>
 #include <exception>
+#include <limits>
 
 namespace hrt
 {
 namespace gl
 {
+namespace
+{
+
+TracerSettings tracerSettings(const Settings& settings)
+{
+  TracerSettings tracing;
+  tracing.maximumDepth = settings.maximumDepth;
+  tracing.shadows = settings.shadows != ShadowMode::Off;
+  // Shadow maps know nothing of translucent casters; a mirror must not show what is not there.
+  tracing.tintedShadows = settings.primaryShading == PrimaryShading::CPU;
+  tracing.reflections = settings.reflections;
+  tracing.refractions = settings.refractions;
+  return tracing;
+}
+
+std::unique_ptr<Structure> makeStructure(Accelerator)
+{
+  return std::make_unique<EmbreeStructure>();
+}
+
+} // namespace
+
 
 //------------------------------------------------------------------------------
 FrameRenderer::FrameRenderer(vtkOpenGLRenderWindow* window)
@@ -96,7 +119,7 @@ std::string FrameRenderer::render(const std::shared_ptr<const Snapshot>& snapsho
       std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
   }
   this->LastSettings = settings;
-  this->Valid = error.empty() ? cachesAfter(plan, settingsChanges, changes, caches) : Caches();
+  this->Valid = error.empty() ? cachesAfter(plan, settings, settingsChanges, changes, caches) : Caches();
   return error;
 }
 
@@ -110,17 +133,21 @@ std::string FrameRenderer::runStage(
       return this->uploadGeometry(snapshot);
     case Stage::ShadowMaps:
       return this->drawShadowMaps(snapshot);
+    case Stage::Structure:
+      return this->updateStructure(snapshot, settings);
     case Stage::Visibility:
-      return this->drawVisibility(snapshot);
-    case Stage::PrimaryShading:
-      return this->shadePrimary(snapshot);
+      return settings.visibility == Visibility::RayCasting ? this->castPrimary(snapshot)
+                                                           : this->drawVisibility(snapshot);
     case Stage::ReadBack:
       this->ReadBack.begin(this->Hits);
+      this->ReadBackBegun = true;
       return {};
-    case Stage::Structure:
-      return this->updateStructure(snapshot);
+    case Stage::PrimaryShading:
+      return settings.primaryShading == PrimaryShading::CPU
+        ? this->trace(&traceImage, snapshot, settings, this->Caster.image())
+        : this->shadePrimary(snapshot);
     case Stage::SecondaryRays:
-      return this->traceSecondaryRays(snapshot, settings);
+      return this->trace(&traceSecondary, snapshot, settings, this->Secondary);
     case Stage::Blit:
     case Stage::Count:
       break;
@@ -181,13 +208,14 @@ std::string FrameRenderer::shadePrimary(const Snapshot& snapshot)
 }
 
 //------------------------------------------------------------------------------
-std::string FrameRenderer::updateStructure(const Snapshot& snapshot)
+std::string FrameRenderer::updateStructure(const Snapshot& snapshot, const Settings& settings)
 {
   try
   {
-    if (!this->Rays)
+    if (!this->Rays || this->RaysKind != settings.accelerator)
     {
-      this->Rays = std::make_unique<EmbreeStructure>();
+      this->Rays = makeStructure(settings.accelerator);
+      this->RaysKind = settings.accelerator;
     }
     this->Statistics.structure = this->Rays->update(snapshot);
   }
@@ -200,45 +228,80 @@ std::string FrameRenderer::updateStructure(const Snapshot& snapshot)
 }
 
 //------------------------------------------------------------------------------
-std::string FrameRenderer::traceSecondaryRays(const Snapshot& snapshot, const Settings& settings)
+const std::vector<std::uint32_t>& FrameRenderer::hostIds()
 {
-  std::vector<std::uint32_t> ids;
-  if (!this->ReadBack.finish(ids))
+  if (this->ReadBackBegun)
   {
-    return "the object intersection buffer could not be read back";
+    this->ReadBackBegun = false;
+    this->Statistics.bytesReadBack += this->ReadBack.bytes();
+    if (!this->ReadBack.finish(this->Host.ids))
+    {
+      this->Host.ids.clear();
+    }
   }
-  this->Statistics.bytesReadBack += this->ReadBack.bytes();
+  return this->Host.ids;
+}
 
-  TracerSettings tracing;
-  tracing.maximumDepth = settings.maximumDepth;
-  tracing.shadows = settings.shadows != ShadowMode::Off;
-  tracing.reflections = settings.reflections;
-  tracing.refractions = settings.refractions;
-  SecondaryImage image;
+//------------------------------------------------------------------------------
+std::string FrameRenderer::castPrimary(const Snapshot& snapshot)
+{
   try
   {
-    const SecondaryResult result =
-      traceSecondary(snapshot, *this->Rays, tracing, ids.data(), image);
-    this->Statistics.rays = result.rays;
-    this->Statistics.secondaryPixels = result.pixels;
-    this->Statistics.invalidIds = result.invalidIds;
+    this->Statistics.rays += castPrimaryRays(snapshot, *this->Rays, this->Host);
   }
   catch (const std::exception& exception)
   {
-    return std::string("the secondary rays could not be traced: ") + exception.what();
+    return std::string("the primary rays could not be traced: ") + exception.what();
   }
-  this->Secondary.allocate(image.width, image.height, GL_RGBA32F, GL_RGBA, GL_FLOAT);
-  this->Secondary.upload(image.pixels.data());
-  this->Statistics.bytesUploaded += image.pixels.size() * sizeof(image.pixels[0]);
+  this->Hits.upload(this->Host);
+  this->Statistics.bytesUploaded +=
+    this->Host.ids.size() * (sizeof(this->Host.ids[0]) + sizeof(float));
   return {};
 }
 
 //------------------------------------------------------------------------------
-bool FrameRenderer::readIds(std::vector<std::uint32_t>& ids)
+std::string FrameRenderer::trace(Tracing* function, const Snapshot& snapshot,
+  const Settings& settings, Image2D& target)
 {
-  this->ReadBack.begin(this->Hits);
-  this->Statistics.bytesReadBack += this->ReadBack.bytes();
-  return this->ReadBack.finish(ids);
+  const std::vector<std::uint32_t>& ids = this->hostIds();
+  if (ids.empty())
+  {
+    return "the object intersection buffer could not be read back";
+  }
+  try
+  {
+    if (!this->Rays) // neither shadows nor mirrors: an empty structure will not be asked
+    {
+      this->Rays = makeStructure(settings.accelerator);
+      this->RaysKind = settings.accelerator;
+    }
+    SecondaryImage image;
+    const SecondaryResult result =
+      function(snapshot, *this->Rays, tracerSettings(settings), ids.data(), image);
+    this->Statistics.rays += result.rays;
+    this->Statistics.secondaryPixels = result.pixels;
+    this->Statistics.invalidIds = result.invalidIds;
+    target.allocate(image.width, image.height, GL_RGBA32F, GL_RGBA, GL_FLOAT);
+    target.upload(image.pixels.data());
+    this->Statistics.bytesUploaded += image.pixels.size() * sizeof(image.pixels[0]);
+  }
+  catch (const std::exception& exception)
+  {
+    return std::string("the rays could not be traced: ") + exception.what();
+  }
+  return {};
+}
+
+//------------------------------------------------------------------------------
+const std::vector<std::uint32_t>& FrameRenderer::ids()
+{
+  if (!this->Valid.hostIds)
+  {
+    this->ReadBack.begin(this->Hits);
+    this->ReadBackBegun = true;
+    this->Valid.hostIds = true;
+  }
+  return this->hostIds();
 }
 
 //------------------------------------------------------------------------------
@@ -255,10 +318,44 @@ bool FrameRenderer::readBarycentrics(std::vector<glm::dvec2>& barycentrics)
 //------------------------------------------------------------------------------
 bool FrameRenderer::readShadow(int light, std::vector<float>& share)
 {
+  if (this->LastSettings.primaryShading == PrimaryShading::CPU)
+  {
+    return this->castShadows(light, share);
+  }
   const bool done =
     this->Caster.readShadow(this->Pool.window(), this->inputs(*this->Scene), light, share);
   this->Statistics.bytesReadBack += share.size() * sizeof(float);
   return done;
+}
+
+//------------------------------------------------------------------------------
+bool FrameRenderer::castShadows(int light, std::vector<float>& share)
+{
+  TracerSettings settings = tracerSettings(this->LastSettings);
+  const std::vector<std::uint32_t>& ids = this->ids();
+  if (ids.empty() || !this->Rays)
+  {
+    return false;
+  }
+  if (!settings.shadows)
+  {
+    share.clear();
+    for (const std::uint32_t id : ids)
+    {
+      share.push_back(id ? 1.0f : std::numeric_limits<float>::quiet_NaN());
+    }
+    return true;
+  }
+  try
+  {
+    share = castShadowRays(
+      *this->Scene, *this->Rays, settings, ids.data(), static_cast<std::size_t>(light));
+  }
+  catch (const std::exception&)
+  {
+    return false;
+  }
+  return true;
 }
 
 } // namespace gl

@@ -58,7 +58,8 @@ public:
   const ObjectPool& pool() const { return this->Pool; }
 
   // For the user's buffers, after render().
-  bool readIds(std::vector<std::uint32_t>& ids);
+  // Triangle numbers plus one of the last frame, row 0 at the bottom. Empty when they cannot be had.
+  const std::vector<std::uint32_t>& ids();
   bool readBarycentrics(std::vector<glm::dvec2>& barycentrics); // direct rendering only
   bool readShadow(int light, std::vector<float>& share);
 
@@ -69,8 +70,14 @@ private:
   std::string drawShadowMaps(const Snapshot& snapshot);
   std::string drawVisibility(const Snapshot& snapshot);
   std::string shadePrimary(const Snapshot& snapshot);
-  std::string updateStructure(const Snapshot& snapshot);
-  std::string traceSecondaryRays(const Snapshot& snapshot, const Settings& settings);
+  std::string updateStructure(const Snapshot& snapshot, const Settings& settings);
+  std::string castPrimary(const Snapshot& snapshot);
+  using Tracing = SecondaryResult(const Snapshot&, const Structure&, const TracerSettings&,
+    const std::uint32_t*, SecondaryImage&);
+  std::string trace(Tracing* function, const Snapshot& snapshot, const Settings& settings,
+    Image2D& target);
+  bool castShadows(int light, std::vector<float>& share);
+  const std::vector<std::uint32_t>& hostIds();
   RayCaster::Inputs inputs(const Snapshot& snapshot) const;
 
   // Destroyed last: all others hold names that it owns.
@@ -85,6 +92,9 @@ private:
   Image2D Secondary;
   Blit ToWindow;
   std::unique_ptr<Structure> Rays;
+  Accelerator RaysKind = Accelerator::Embree;
+  PrimaryHits Host;         // ids in host memory, by rays or read back
+  bool ReadBackBegun = false;
 
   std::shared_ptr<const Snapshot> Scene; // of the last frame
   Settings LastSettings;

@@ -11,6 +11,8 @@
 #include "ObjectIntersectionBuffer_fs.h"
 #include "ObjectIntersectionBuffer_vs.h"
 
+#include <vector>
+
 namespace hrt
 {
 namespace gl
@@ -101,6 +103,20 @@ bool ObjectIntersectionBuffer::draw(
   glBindVertexArray(0);
   releaseProgram(window);
   return true;
+}
+
+//------------------------------------------------------------------------------
+void ObjectIntersectionBuffer::upload(const PrimaryHits& primary)
+{
+  this->TrianglesDrawn = 0;
+  this->Hits.upload(primary.ids.data());
+  std::vector<float> depths;
+  depths.reserve(primary.clipDepths.size());
+  for (const double z : primary.clipDepths)
+  {
+    depths.push_back(this->Convention.storedDepth(z));
+  }
+  this->Depth.upload(depths.data());
 }
 
 } // namespace gl

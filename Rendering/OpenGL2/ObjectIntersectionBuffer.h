@@ -1,5 +1,5 @@
 // The object intersection buffer (paper, section 2.1): per pixel the visible triangle and, in direct
-// rendering, the rasteriser's (u, v). An own single-sample framebuffer with one integer target: the
+// rendering, the rasteriser's (u, v). Filled by rasterisation, or with what primary rays have found. An own single-sample framebuffer with one integer target: the
 // paper codes the number in RGB (2^24 triangles), an integer target holds 2^32 - 1.
 #pragma once
 
@@ -9,6 +9,7 @@
 
 #include "Rendering/Core/Plan/FramePlan.h"
 #include "Rendering/Core/Snapshot.h"
+#include "Rendering/Core/Tracing/Tracer.h"
 
 #include <cstdint>
 
@@ -34,6 +35,9 @@ public:
   // not usable; an error message has been given then.
   bool draw(vtkOpenGLRenderWindow* window, const Snapshot& snapshot,
     const GeometryBuffers& geometry);
+
+  // Takes the ids and depths that primary rays have found instead.
+  void upload(const PrimaryHits& primary);
 
   const Image2D& hits() const { return this->Hits; }
   const Image2D& depth() const { return this->Depth; }

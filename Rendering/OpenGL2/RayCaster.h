@@ -44,6 +44,7 @@ public:
     std::vector<float>& share);
 
   const Image2D& image() const { return this->Image; }
+  Image2D& image() { return this->Image; } // for a picture that the CPU shades
 
 private:
   bool shade(vtkOpenGLRenderWindow* window, const Inputs& inputs, const Image2D& target,

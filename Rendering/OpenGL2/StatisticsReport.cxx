@@ -115,6 +115,7 @@ std::string statisticsReport(const FrameStatistics& statistics, const Snapshot& 
     maps << "]";
     {
       Object classes(report.key("rays"));
+      rays(classes.key("primary"), statistics.rays.primary);
       rays(classes.key("reflection"), statistics.rays.reflection);
       rays(classes.key("refraction"), statistics.rays.refraction);
       rays(classes.key("shadow"), statistics.rays.shadow);

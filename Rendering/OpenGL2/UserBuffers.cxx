@@ -140,9 +140,13 @@ std::string UserBuffers::update(FrameRenderer& frame, const Snapshot& snapshot)
 
   // When nothing is in view the frame has drawn no ids: the last ones are not this frame's.
   std::vector<std::uint32_t> ids(pixels, 0);
-  if (frame.statistics().plan[Stage::Blit].run && !frame.readIds(ids))
+  if (frame.statistics().plan[Stage::Blit].run)
   {
-    return "the object intersection buffer could not be read back";
+    ids = frame.ids();
+    if (ids.size() != pixels)
+    {
+      return "the object intersection buffer could not be read back";
+    }
   }
 
   // Direct rendering shows what it has: the rasteriser's (u, v) and the points they give.

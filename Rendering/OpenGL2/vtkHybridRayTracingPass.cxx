@@ -14,6 +14,7 @@
 #include "vtkObjectFactory.h"
 #include "vtkOpenGLRenderWindow.h"
 #include "vtkProp.h"
+#include "vtkPropCollection.h"
 #include "vtkRenderState.h"
 #include "vtkRenderer.h"
 
@@ -61,8 +62,9 @@ vtkHybridRayTracingPass::~vtkHybridRayTracingPass() = default;
 void vtkHybridRayTracingPass::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
-  os << indent << "Visibility: "
-     << (this->Visibility == ItemBuffer ? "ItemBuffer" : "DirectRendering") << "\n";
+  const char* const visibilities[] = { "ItemBuffer", "DirectRendering", "RayCasting" };
+  os << indent << "Visibility: " << visibilities[this->Visibility] << "\n";
+  os << indent << "PrimaryShading: " << (this->PrimaryShading == GPU ? "GPU" : "CPU") << "\n";
   os << indent << "ShadowMode: " << (this->ShadowMode == ShadowsOff ? "Off" : "ShadowMaps") << "\n";
   os << indent << "ShadowMapResolution: " << this->ShadowMapResolution << "\n";
   os << indent << "Reflections: " << (this->Reflections ? "On" : "Off") << "\n";
@@ -79,15 +81,31 @@ void vtkHybridRayTracingPass::PrintSelf(ostream& os, vtkIndent indent)
 //------------------------------------------------------------------------------
 void vtkHybridRayTracingPass::SetVisibility(int visibility)
 {
-  if (visibility != ItemBuffer && visibility != DirectRendering)
+  if (visibility < ItemBuffer || visibility > RayCasting)
   {
     vtkErrorMacro("SetVisibility: " << visibility
-                                    << " is neither ItemBuffer (0) nor DirectRendering (1)");
+                                    << " is none of ItemBuffer (0), DirectRendering (1) and "
+                                       "RayCasting (2)");
     return;
   }
   if (this->Visibility != visibility)
   {
     this->Visibility = visibility;
+    this->Modified();
+  }
+}
+
+//------------------------------------------------------------------------------
+void vtkHybridRayTracingPass::SetPrimaryShading(int shading)
+{
+  if (shading != GPU && shading != CPU)
+  {
+    vtkErrorMacro("SetPrimaryShading: " << shading << " is neither GPU (0) nor CPU (1)");
+    return;
+  }
+  if (this->PrimaryShading != shading)
+  {
+    this->PrimaryShading = shading;
     this->Modified();
   }
 }
@@ -252,8 +270,11 @@ void vtkHybridRayTracingPass::Render(const vtkRenderState* s)
   const std::shared_ptr<const hrt::Snapshot> snapshot = in.Scene->GetSnapshot();
 
   hrt::Settings settings;
-  settings.visibility = this->Visibility == DirectRendering ? hrt::Visibility::DirectRendering
-                                                            : hrt::Visibility::ItemBuffer;
+  settings.visibility = this->Visibility == RayCasting ? hrt::Visibility::RayCasting
+    : this->Visibility == DirectRendering              ? hrt::Visibility::DirectRendering
+                                                       : hrt::Visibility::ItemBuffer;
+  settings.primaryShading =
+    this->PrimaryShading == CPU ? hrt::PrimaryShading::CPU : hrt::PrimaryShading::GPU;
   settings.shadows =
     this->ShadowMode == ShadowsOff ? hrt::ShadowMode::Off : hrt::ShadowMode::ShadowMaps;
   settings.shadowMapResolution = this->ShadowMapResolution;
@@ -300,9 +321,10 @@ void vtkHybridRayTracingPass::Render(const vtkRenderState* s)
     }
     else if (!reason.empty())
     {
-      std::ostringstream name;
-      name << prop->GetClassName() << " (" << prop << ")";
-      left.emplace_back(name.str(), reason);
+      // By its place among the renderer's view props, which a script can look up.
+      const int place = renderer->GetViewProps()->IsItemPresent(prop) - 1;
+      left.emplace_back(
+        std::string(prop->GetClassName()) + " #" + std::to_string(place), reason);
     }
   }
   this->NumberOfRenderedProps = traced + in.Remaining.draw(s, isTraced);

@@ -19,6 +19,9 @@
  * after and against the traced picture's depth. Picking with vtkHardwareSelector works as without
  * the pass.
  *
+ * One ray or sample a pixel: vtkRenderWindow::SetMultiSamples smooths what VTK draws, not the traced
+ * surfaces; vtkRenderer::UseFXAA smooths both.
+ *
  * Framebuffer in: the one bound when Render is called (the renderer's). Framebuffer out: colour and
  * depth of the renderer's viewport. The render state is not modified.
  *
@@ -58,20 +61,43 @@ public:
   enum VisibilityType
   {
     ItemBuffer = 0,
-    DirectRendering = 1
+    DirectRendering = 1,
+    RayCasting = 2
   };
 
   ///@{
   /**
    * How the first hit of each pixel is found (paper, section 2.1). ItemBuffer: the rasteriser gives
    * the triangle, exactly one ray-triangle intersection gives the point. DirectRendering: the
-   * rasteriser also interpolates (u, v), no intersection is computed; errors up to 5e-4 in (u, v).
-   * Default: ItemBuffer.
+   * rasteriser also interpolates (u, v), no intersection is computed; the point is off by up to a
+   * few thousandths of a pixel.
+   * RayCasting: a ray through each pixel's centre, on the CPU, in double precision; no rasteriser
+   * is involved. Default: ItemBuffer.
    */
   void SetVisibility(int visibility);
   vtkGetMacro(Visibility, int);
   void SetVisibilityToItemBuffer() { this->SetVisibility(ItemBuffer); }
   void SetVisibilityToDirectRendering() { this->SetVisibility(DirectRendering); }
+  void SetVisibilityToRayCasting() { this->SetVisibility(RayCasting); }
+  ///@}
+
+  enum PrimaryShadingType
+  {
+    GPU = 0,
+    CPU = 1
+  };
+
+  ///@{
+  /**
+   * Where the first hits are shaded. GPU: by the ray caster's fragment shader, with shadow maps
+   * (paper, section 3.2). CPU: by the tracer on all cores, with a shadow ray to each light, through
+   * translucent casters tinted; with RayCasting this is the paper's traditional ray tracer, every
+   * ray on the CPU. Both use the same shading equations. Default: GPU.
+   */
+  void SetPrimaryShading(int shading);
+  vtkGetMacro(PrimaryShading, int);
+  void SetPrimaryShadingToGPU() { this->SetPrimaryShading(GPU); }
+  void SetPrimaryShadingToCPU() { this->SetPrimaryShading(CPU); }
   ///@}
 
   enum ShadowModeType
@@ -83,8 +109,9 @@ public:
   ///@{
   /**
    * Shadows. ShadowMaps: one depth map per light (paper, section 2.2), for directional, spot and
-   * point lights; a surface seen in a mirror or through glass is shadowed by rays. Opaque actors
-   * cast; translucent ones and glass let all light through. A positional headlight sits in the
+   * point lights; a surface seen in a mirror or through glass, or shaded on the CPU, is shadowed by
+   * rays. Opaque actors cast; glass lets all light through, and so do translucent actors unless the
+   * CPU shades. A positional headlight sits in the
    * viewer's eye and shows no shadow. Default: ShadowMaps.
    */
   void SetShadowMode(int mode);
@@ -137,10 +164,11 @@ public:
    * Per-pixel results to keep besides the picture, by name; nothing is computed that was not asked
    * for. Names: "triangle" (number in the scene), "cell" (vtkPolyData cell), "prop" (see
    * GetPropFromId), all three 64-bit with -1 where nothing was hit; "barycentric" (u, v of the
-   * second and third corner; with DirectRendering as the rasteriser interpolated them), "position" (world), "normal" (world, unit, on the viewer's side),
-   * "depth" (distance along the view axis), "shadow" (one component a light: its visible share,
-   * 1 lit to 0 in shadow), all with NaN where nothing was hit. An unknown name is an error and
-   * changes nothing. GetKnownBuffers lists all names. Default: none.
+   * second and third corner; with DirectRendering as the rasteriser interpolated them), "position"
+   * (world), "normal" (world, unit, on the viewer's side), "depth" (distance along the view axis),
+   * "shadow" (one component a light: its visible share, 1 lit to 0 in shadow), all with NaN where
+   * nothing was hit. Actors that are left to VTK are not in the buffers. An unknown name is an error
+   * and changes nothing. GetKnownBuffers lists all names. Default: none.
    */
   void SetBuffers(const std::vector<std::string>& names);
   std::vector<std::string> GetBuffers();
@@ -181,6 +209,7 @@ private:
   void operator=(const vtkHybridRayTracingPass&) = delete;
 
   int Visibility = ItemBuffer;
+  int PrimaryShading = GPU;
   int ShadowMode = ShadowMaps;
   int ShadowMapResolution = 2048;
   bool Reflections = true;

@@ -42,11 +42,12 @@ def near_silhouette(rt):
     return edge
 
 
-def compare(renderer, render, visibility="ItemBuffer", size=(400, 300)):
+def compare(renderer, render, visibility="ItemBuffer", size=(400, 300), shading="GPU"):
     expected = render(renderer, size).astype(int)
     rt = vtkHybridRayTracingPass()
     rt.SetShadowModeToOff()
     getattr(rt, "SetVisibilityTo" + visibility)()
+    getattr(rt, "SetPrimaryShadingTo" + shading)()
     rt.SetBuffers(["prop", "position", "normal"])
     renderer.SetPass(rt)
     shown = render(renderer, size).astype(int)

@@ -40,7 +40,13 @@ __all__ = [
 def statistics(rt):
     """The counters of the last frame of `rt` as a dict: stages with the reason why each ran or did
     not, rays by class, triangles drawn, bytes read back, milliseconds."""
-    return _json.loads(rt.GetStatistics())
+    counters = _json.loads(rt.GetStatistics())
+    if not counters:
+        raise RuntimeError(
+            "no frame has been rendered with this pass; was vtkRenderWindow() made before vtkhybrid "
+            "or vtkmodules.vtkRenderingOpenGL2 was imported?"
+        )
+    return counters
 
 
 def _check_name(rt, name):

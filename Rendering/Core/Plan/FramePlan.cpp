@@ -51,6 +51,12 @@ public:
     return cause ? cause : this->C.transforms ? "an actor moved" : nullptr;
   }
 
+  Cause structure() const
+  {
+    const Cause cause = this->placedTriangles();
+    return cause ? cause : this->Settings.structure ? "another accelerator was chosen" : nullptr;
+  }
+
   Cause shadowMap(std::size_t light) const
   {
     if (const Cause cause = this->placedTriangles())
@@ -83,7 +89,7 @@ public:
       : this->C.lightCount        ? "the set of lights changed"
       : anyLightMoved(this->C)    ? "a light moved"
       : this->C.lightColors       ? "a light's colour changed"
-      : this->Settings.shading    ? "the shadow settings changed"
+      : this->Settings.shading    ? "the shading or shadow settings changed"
                                   : nullptr;
   }
 
@@ -93,6 +99,7 @@ public:
     return cause ? cause : this->shading();
   }
 
+  // What rays beyond the first hit see.
   Cause secondaryImage() const
   {
     const Cause cause = this->primaryImage();
@@ -107,16 +114,26 @@ private:
   const SettingsChanges& Settings;
 };
 
+bool rasterises(const Settings& settings)
+{
+  return settings.visibility != Visibility::RayCasting;
+}
+
 StageDecision decide(Cause outdated, bool cached, const char* missing, const char* upToDate)
 {
   return outdated ? run(outdated) : cached ? skip(upToDate) : run(missing);
 }
 
-StageDecision planUpload(const Facts& facts, const Inputs& inputs, const Caches& caches)
+StageDecision planUpload(
+  const Facts& facts, const Settings& settings, const Inputs& inputs, const Caches& caches)
 {
   if (!facts.anyPartInView)
   {
     return skip("nothing is in view");
+  }
+  if (!rasterises(settings) && settings.primaryShading == PrimaryShading::CPU)
+  {
+    return skip("all is done on the CPU");
   }
   return decide(inputs.triangles(), caches.geometryUploaded, "the GPU does not hold the geometry",
     "the GPU holds the geometry");
@@ -128,6 +145,10 @@ StageDecision planShadowMap(std::size_t light, const Facts& facts, const Setting
   if (settings.shadows != ShadowMode::ShadowMaps)
   {
     return skip("shadows are off");
+  }
+  if (settings.primaryShading == PrimaryShading::CPU)
+  {
+    return skip("the CPU shades with shadow rays");
   }
   if (!facts.anyPartInView)
   {
@@ -169,8 +190,8 @@ StageDecision planVisibility(const Facts& facts, const Inputs& inputs, const Cac
     "nothing changed what is visible");
 }
 
-StageDecision planPrimaryShading(
-  const Facts& facts, const FramePlan& plan, const Inputs& inputs, const Caches& caches)
+StageDecision planPrimaryShading(const Facts& facts, const Settings& settings,
+  const FramePlan& plan, const Inputs& inputs, const Caches& caches)
 {
   if (!facts.anyPartInView)
   {
@@ -184,8 +205,10 @@ StageDecision planPrimaryShading(
   {
     return run("a shadow map is new");
   }
-  return decide(inputs.primaryImage(), caches.primaryImage, "no primary image yet",
-    "the primary image is valid");
+  // The tracer's picture holds its mirrors and glass.
+  const bool whole = settings.primaryShading == PrimaryShading::CPU;
+  return decide(whole ? inputs.secondaryImage() : inputs.primaryImage(), caches.primaryImage,
+    "no primary image yet", "the primary image is valid");
 }
 
 // Whether the settings let secondary rays run for what is in view; else why not.
@@ -210,28 +233,71 @@ StageDecision needsSecondaryRays(const Facts& facts, const Settings& settings)
   return skip("reflections or refractions are off");
 }
 
-void planSecondary(const StageDecision& needed, const Inputs& inputs, const Caches& caches,
-  FramePlan& plan)
+StageDecision planSecondary(const StageDecision& needed, const Settings& settings,
+  const FramePlan& plan, const Inputs& inputs, const Caches& caches)
 {
-  plan.useSecondaryImage = needed.run;
   if (!needed.run)
   {
-    plan[Stage::ReadBack] = plan[Stage::Structure] = plan[Stage::SecondaryRays] = needed;
-    return;
+    return needed;
+  }
+  if (settings.primaryShading == PrimaryShading::CPU)
+  {
+    return skip("traced with the primary image");
   }
   // New visibility always renews the rays: the pixels of mirrors and glass are others.
   const StageDecision& visibility = plan[Stage::Visibility];
-  plan[Stage::SecondaryRays] = decide(
-    visibility.run ? visibility.reason : inputs.secondaryImage(), caches.secondaryImage,
-    "no secondary image yet", "the secondary image is valid");
-  if (!plan[Stage::SecondaryRays].run)
+  return decide(visibility.run ? visibility.reason : inputs.secondaryImage(),
+    caches.secondaryImage, "no secondary image yet", "the secondary image is valid");
+}
+
+StageDecision planReadBack(
+  const Settings& settings, const FramePlan& plan, const Caches& caches)
+{
+  const bool shadesOnCPU =
+    settings.primaryShading == PrimaryShading::CPU && plan[Stage::PrimaryShading].run;
+  if (!shadesOnCPU && !plan[Stage::SecondaryRays].run)
   {
-    plan[Stage::ReadBack] = plan[Stage::Structure] = plan[Stage::SecondaryRays];
-    return;
+    return skip(settings.primaryShading == PrimaryShading::CPU
+        ? plan[Stage::PrimaryShading].reason
+        : plan[Stage::SecondaryRays].reason);
   }
-  plan[Stage::ReadBack] = run("secondary rays start at the visible triangles");
-  plan[Stage::Structure] = decide(inputs.placedTriangles(), caches.structure,
-    "no ray structure yet", "the ray structure is valid");
+  if (!rasterises(settings))
+  {
+    return skip("primary rays leave their ids on the host");
+  }
+  if (!plan[Stage::Visibility].run && caches.hostIds)
+  {
+    return skip("the ids are on the host");
+  }
+  return run("rays start at the visible triangles");
+}
+
+// Whether some stage of this frame shoots rays; else why not.
+StageDecision needsStructure(
+  const StageDecision& secondary, const Settings& settings, const FramePlan& plan)
+{
+  if (!rasterises(settings) && plan[Stage::Visibility].run)
+  {
+    return run("primary rays");
+  }
+  const bool shadesOnCPU =
+    settings.primaryShading == PrimaryShading::CPU && plan[Stage::PrimaryShading].run;
+  if (shadesOnCPU && (settings.shadows != ShadowMode::Off || secondary.run))
+  {
+    return run("shadow rays");
+  }
+  return plan[Stage::SecondaryRays];
+}
+
+StageDecision planStructure(
+  const StageDecision& needed, const Inputs& inputs, const Caches& caches)
+{
+  if (!needed.run)
+  {
+    return needed;
+  }
+  return decide(inputs.structure(), caches.structure, "no ray structure yet",
+    "the ray structure is valid");
 }
 
 StageDecision planBlit(const Facts& facts, const FramePlan& plan)
@@ -308,7 +374,8 @@ SettingsChanges compareSettings(const Settings& before, const Settings& now)
 {
   SettingsChanges changes;
   changes.visibility = before.visibility != now.visibility;
-  changes.shading = before.shadows != now.shadows ||
+  changes.structure = before.accelerator != now.accelerator;
+  changes.shading = before.shadows != now.shadows || before.primaryShading != now.primaryShading ||
     (now.shadows == ShadowMode::ShadowMaps &&
       before.shadowMapResolution != now.shadowMapResolution);
   changes.secondary = before.reflections != now.reflections ||
@@ -320,22 +387,28 @@ FramePlan planFrame(const Facts& facts, const Settings& settings,
   const SettingsChanges& settingsChanges, const Changes& changes, const Caches& caches)
 {
   const Inputs inputs(changes, settingsChanges);
+  const StageDecision secondary = needsSecondaryRays(facts, settings);
   FramePlan plan;
-  plan[Stage::GeometryUpload] = planUpload(facts, inputs, caches);
+  plan[Stage::GeometryUpload] = planUpload(facts, settings, inputs, caches);
   for (std::size_t light = 0; light < facts.lightCanCast.size(); ++light)
   {
     plan.shadowMaps.push_back(planShadowMap(light, facts, settings, inputs, caches));
   }
   plan[Stage::ShadowMaps] = summarizeShadowMaps(plan.shadowMaps);
   plan[Stage::Visibility] = planVisibility(facts, inputs, caches);
-  plan[Stage::PrimaryShading] = planPrimaryShading(facts, plan, inputs, caches);
-  planSecondary(needsSecondaryRays(facts, settings), inputs, caches, plan);
+  plan[Stage::PrimaryShading] = planPrimaryShading(facts, settings, plan, inputs, caches);
+  plan[Stage::SecondaryRays] = planSecondary(secondary, settings, plan, inputs, caches);
+  plan[Stage::ReadBack] = planReadBack(settings, plan, caches);
+  plan[Stage::Structure] =
+    planStructure(needsStructure(secondary, settings, plan), inputs, caches);
   plan[Stage::Blit] = planBlit(facts, plan);
+  plan.useSecondaryImage =
+    secondary.run && settings.primaryShading == PrimaryShading::GPU;
   return plan;
 }
 
-Caches cachesAfter(const FramePlan& plan, const SettingsChanges& settingsChanges,
-  const Changes& changes, const Caches& before)
+Caches cachesAfter(const FramePlan& plan, const Settings& settings,
+  const SettingsChanges& settingsChanges, const Changes& changes, const Caches& before)
 {
   const Inputs inputs(changes, settingsChanges);
   const auto valid = [&plan](Stage stage, Cause outdated, bool cached) {
@@ -345,10 +418,16 @@ Caches cachesAfter(const FramePlan& plan, const SettingsChanges& settingsChanges
   after.geometryUploaded =
     valid(Stage::GeometryUpload, inputs.triangles(), before.geometryUploaded);
   after.visibility = valid(Stage::Visibility, inputs.visibility(), before.visibility);
-  after.primaryImage = valid(Stage::PrimaryShading, inputs.primaryImage(), before.primaryImage);
+  // Ids are on the host after a read-back or after primary rays, which need none.
+  after.hostIds = plan[Stage::ReadBack].run ||
+    (plan[Stage::Visibility].run ? settings.visibility == Visibility::RayCasting
+                                 : before.hostIds && !inputs.visibility());
+  const bool whole = settings.primaryShading == PrimaryShading::CPU;
+  after.primaryImage = valid(Stage::PrimaryShading,
+    whole ? inputs.secondaryImage() : inputs.primaryImage(), before.primaryImage);
   after.secondaryImage =
     valid(Stage::SecondaryRays, inputs.secondaryImage(), before.secondaryImage);
-  after.structure = valid(Stage::Structure, inputs.placedTriangles(), before.structure);
+  after.structure = valid(Stage::Structure, inputs.structure(), before.structure);
   for (std::size_t light = 0; light < plan.shadowMaps.size(); ++light)
   {
     const bool cached = light < before.shadowMaps.size() && before.shadowMaps[light];

@@ -13,13 +13,34 @@
 namespace hrt
 {
 
-enum class Visibility : std::uint8_t { ItemBuffer, DirectRendering };
-enum class ShadowMode : std::uint8_t { Off, ShadowMaps };
+enum class Visibility : std::uint8_t
+{
+  ItemBuffer,      // rasterised ids, one intersection a pixel
+  DirectRendering, // rasterised ids and (u, v)
+  RayCasting       // primary rays on the CPU
+};
+enum class PrimaryShading : std::uint8_t
+{
+  GPU, // the ray caster's shader, shadows from maps
+  CPU  // the tracer, shadows from rays
+};
+enum class Accelerator : std::uint8_t
+{
+  Embree,
+  KdTree
+};
+enum class ShadowMode : std::uint8_t
+{
+  Off,
+  ShadowMaps
+};
 
 // What the user asked for; read from the pass.
 struct Settings
 {
   Visibility visibility = Visibility::ItemBuffer;
+  PrimaryShading primaryShading = PrimaryShading::GPU;
+  Accelerator accelerator = Accelerator::Embree;
   ShadowMode shadows = ShadowMode::ShadowMaps;
   bool reflections = true;
   bool refractions = true;
@@ -31,8 +52,9 @@ struct Settings
 struct SettingsChanges
 {
   bool visibility = false; // how the first hits are found
-  bool shading = false;    // shadows
+  bool shading = false;    // where and with which shadows they are shaded
   bool secondary = false;  // reflections, refractions, depth
+  bool structure = false;  // the kind of ray structure
 };
 SettingsChanges compareSettings(const Settings& before, const Settings& now);
 
@@ -52,20 +74,22 @@ struct Caches
 {
   bool geometryUploaded = false;      // the GPU holds this snapshot's geometry
   bool visibility = false;            // the object intersection buffer exists with this size
+  bool hostIds = false;               // its ids are in host memory
   bool primaryImage = false;          // the shaded primary image exists
   bool secondaryImage = false;        // the secondary rays' image exists
   bool structure = false;             // a ray structure exists
   std::vector<bool> shadowMaps;       // per light: its map exists at the wanted resolution
 };
 
+// In the order in which they run.
 enum class Stage : std::uint8_t
 {
   GeometryUpload,  // triangles to vertex and texture buffers
   ShadowMaps,      // depth maps as seen from the lights
-  Visibility,      // the object intersection buffer
-  PrimaryShading,  // GPU ray caster
-  ReadBack,        // ids of the pixels to host memory
   Structure,       // acceleration structure for rays
+  Visibility,      // what each pixel shows: rasterised or by primary rays
+  ReadBack,        // ids of the pixels to host memory
+  PrimaryShading,  // GPU ray caster, or the tracer
   SecondaryRays,   // reflection, refraction and their shadow rays
   Blit,            // result into the window's framebuffer
   Count
@@ -100,7 +124,7 @@ Facts gatherFacts(const Snapshot& snapshot);
 // What is valid after a frame that ran the plan: results of stages that ran are; results of stages
 // that were skipped although what they depend on changed are no longer. Without this a structure
 // that no mirror needed while a part moved would look up to date when the mirror comes into view.
-Caches cachesAfter(const FramePlan& plan, const SettingsChanges& settingsChanges,
-  const Changes& changes, const Caches& before);
+Caches cachesAfter(const FramePlan& plan, const Settings& settings,
+  const SettingsChanges& settingsChanges, const Changes& changes, const Caches& before);
 
 } // namespace hrt

@@ -160,6 +160,26 @@ glm::vec3 Lighting::transmittance(Ray ray) const
   return glm::vec3(0.0f);
 }
 
+float Lighting::visibleShare(const SurfacePoint& point, std::size_t light) const
+{
+  Ray ray;
+  const Sight seen = this->sight(point, this->Scene.lights[light], ray);
+  if (seen != Sight::Open)
+  {
+    return seen == Sight::Free ? 1.0f : 0.0f;
+  }
+  if (this->Rays.occluded(ray))
+  {
+    return 0.0f;
+  }
+  if (!this->Settings.tintedShadows || !this->AnyTranslucent)
+  {
+    return 1.0f;
+  }
+  const glm::vec3 share = this->transmittance(ray);
+  return (share.x + share.y + share.z) / 3.0f;
+}
+
 void Lighting::flush(ShadowQueue& queue, RayOrder order, std::vector<glm::vec3>& sums) const
 {
   std::vector<std::uint8_t> blocked(queue.rays.size());

@@ -55,6 +55,9 @@ public:
   // Traces the queue's rays and adds what passes; the queue is empty afterwards.
   void flush(ShadowQueue& queue, RayOrder order, std::vector<glm::vec3>& sums) const;
 
+  // The share of one light that reaches a point.
+  float visibleShare(const SurfacePoint& point, std::size_t light) const;
+
 private:
   void addLights(const SurfacePoint& point, const shading::HrtSurface& colors,
     const glm::dvec3& toViewer, const Target& target, ShadowQueue& queue,

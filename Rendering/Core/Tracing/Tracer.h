@@ -99,4 +99,9 @@ SecondaryResult traceSecondary(const Snapshot& snapshot, const Structure& struct
 SecondaryResult traceImage(const Snapshot& snapshot, const Structure& structure,
   const TracerSettings& settings, const std::uint32_t* ids, SecondaryImage& image);
 
+// The visible share of one light at every pixel with a valid id, 1 lit to 0 in shadow, NaN elsewhere;
+// by shadow rays. With tinted shadows the mean over the colours.
+std::vector<float> castShadowRays(const Snapshot& snapshot, const Structure& structure,
+  const TracerSettings& settings, const std::uint32_t* ids, std::size_t light);
+
 } // namespace hrt

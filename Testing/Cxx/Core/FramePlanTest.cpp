@@ -30,7 +30,7 @@ struct Frame
     changes.lightCount = false;
     changes.lightMoved = { false, false };
     caches.geometryUploaded = caches.visibility = caches.primaryImage = true;
-    caches.secondaryImage = caches.structure = true;
+    caches.secondaryImage = caches.structure = caches.hostIds = true;
     caches.shadowMaps = { true, true };
   }
 
@@ -88,34 +88,34 @@ TEST(FramePlan, RunsWhatAChangeNeeds)
     { "geometry", "U01VPRTYB", [](Frame& f) { f.changes.geometry = true; } },
     { "actor moved", "01VPRTYB", [](Frame& f) { f.changes.transforms = true; } },
     { "camera", "VPRYB", [](Frame& f) { f.changes.camera = true; } },
-    { "material", "PRYB", [](Frame& f) { f.changes.materials = true; } },
+    { "material", "PYB", [](Frame& f) { f.changes.materials = true; } },
     { "culling", "VPRYB",
       [](Frame& f) { f.changes.materials = f.changes.culling = true; } },
-    { "light colour", "PRYB", [](Frame& f) { f.changes.lightColors = true; } },
-    { "light 1 moved", "1PRYB", [](Frame& f) { f.changes.lightMoved[1] = true; } },
+    { "light colour", "PYB", [](Frame& f) { f.changes.lightColors = true; } },
+    { "light 1 moved", "1PYB", [](Frame& f) { f.changes.lightMoved[1] = true; } },
     { "light 1 moved, no mirror", "1PB",
       [](Frame& f) {
         f.changes.lightMoved[1] = true;
         f.facts.mirrorInView = false;
       } },
-    { "lights replaced", "01PRYB", [](Frame& f) { f.changes.lightCount = true; } },
-    { "background", "RYB", [](Frame& f) { f.changes.background = true; } },
+    { "lights replaced", "01PYB", [](Frame& f) { f.changes.lightCount = true; } },
+    { "background", "YB", [](Frame& f) { f.changes.background = true; } },
     { "background, no mirror", "B",
       [](Frame& f) {
         f.changes.background = true;
         f.facts.mirrorInView = false;
       } },
     { "visibility setting", "VPRYB", [](Frame& f) { f.settingsChanges.visibility = true; } },
-    { "shadow setting", "PRYB", [](Frame& f) { f.settingsChanges.shading = true; } },
-    { "depth setting", "RYB", [](Frame& f) { f.settingsChanges.secondary = true; } },
+    { "shadow setting", "PYB", [](Frame& f) { f.settingsChanges.shading = true; } },
+    { "depth setting", "YB", [](Frame& f) { f.settingsChanges.secondary = true; } },
     { "no upload yet", "UB", [](Frame& f) { f.caches.geometryUploaded = false; } },
     { "no map yet", "0PB", [](Frame& f) { f.caches.shadowMaps[0] = false; } },
     { "caches of fewer lights", "1PB", [](Frame& f) { f.caches.shadowMaps.resize(1); } },
     { "no buffer yet", "VPRYB", [](Frame& f) { f.caches.visibility = false; } },
     { "no primary image", "PB", [](Frame& f) { f.caches.primaryImage = false; } },
-    { "no secondary image", "RYB", [](Frame& f) { f.caches.secondaryImage = false; } },
+    { "no secondary image", "YB", [](Frame& f) { f.caches.secondaryImage = false; } },
     { "unneeded structure", "B", [](Frame& f) { f.caches.structure = false; } },
-    { "no structure", "RTYB",
+    { "no structure", "TYB",
       [](Frame& f) { f.caches.structure = f.caches.secondaryImage = false; } },
     { "shadows off", "VPRTYB",
       [](Frame& f) {
@@ -142,6 +142,16 @@ TEST(FramePlan, RunsWhatAChangeNeeds)
         f.facts.mirrorInView = false;
         f.facts.glassInView = true;
         f.changes.camera = true;
+      } },
+    { "ids not on the host", "PRYB",
+      [](Frame& f) {
+        f.changes.materials = true;
+        f.caches.hostIds = false;
+      } },
+    { "another accelerator", "B", [](Frame& f) { f.settingsChanges.structure = true; } },
+    { "another accelerator, moved", "VPRTYB",
+      [](Frame& f) {
+        f.settingsChanges.structure = f.changes.camera = true;
       } },
     { "nothing in view", "",
       [](Frame& f) {
@@ -217,6 +227,65 @@ TEST(FramePlan, EveryStageHasANameAndAReason)
   EXPECT_STREQ(moved.plan()[Stage::Structure].reason, "an actor moved");
 }
 
+// The same rows for pictures that the CPU shades, over rasterised ids and over primary rays.
+TEST(FramePlan, CPUShadingNeedsNoMapsAndTracesAllAtOnce)
+{
+  const struct
+  {
+    const char* what;
+    const char* rasterised;
+    const char* rayCast;
+    std::function<void(Frame&)> change;
+  } table[] = {
+    { "nothing", "B", "B", [](Frame&) {} },
+    { "first frame", "UVPRTB", "VPTB",
+      [](Frame& f) {
+        f.changes = Changes();
+        f.changes.lightMoved = { true, true };
+        f.caches = Caches();
+      } },
+    { "camera", "VPRB", "VPB", [](Frame& f) { f.changes.camera = true; } },
+    { "actor moved", "VPRTB", "VPTB", [](Frame& f) { f.changes.transforms = true; } },
+    { "light moved", "PB", "PB", [](Frame& f) { f.changes.lightMoved[1] = true; } },
+    { "background", "PB", "PB", [](Frame& f) { f.changes.background = true; } },
+    { "depth setting", "PB", "PB", [](Frame& f) { f.settingsChanges.secondary = true; } },
+    { "moved, no mirror, no shadow", "VPRB", "VPTB",
+      [](Frame& f) {
+        f.changes.transforms = true;
+        f.facts.mirrorInView = false;
+        f.settings.shadows = ShadowMode::Off;
+      } },
+    { "nothing in view", "", "", [](Frame& f) { f.facts.anyPartInView = false; } },
+  };
+  for (const auto& row : table)
+  {
+    Frame frame;
+    frame.settings.primaryShading = PrimaryShading::CPU;
+    row.change(frame);
+    EXPECT_EQ(running(frame.plan()), row.rasterised) << row.what;
+    EXPECT_FALSE(frame.plan().useSecondaryImage) << row.what;
+    frame.settings.visibility = Visibility::RayCasting;
+    EXPECT_EQ(running(frame.plan()), row.rayCast) << row.what;
+  }
+}
+
+TEST(FramePlan, PrimaryRaysFeedTheGPU)
+{
+  Frame frame;
+  frame.settings.visibility = Visibility::RayCasting;
+  frame.facts.mirrorInView = false;
+  frame.changes.camera = true;
+  FramePlan plan = frame.plan();
+  EXPECT_EQ(running(plan), "VPB");
+  frame.caches = cachesAfter(plan, frame.settings, {}, frame.changes, frame.caches);
+  EXPECT_TRUE(frame.caches.hostIds) << "the rays' own";
+  frame.caches.structure = false;
+  EXPECT_EQ(running(frame.plan()), "VPTB");
+  frame.facts.mirrorInView = true;
+  EXPECT_EQ(running(frame.plan()), "VPTYB");
+  EXPECT_STREQ(frame.plan()[Stage::ReadBack].reason, "primary rays leave their ids on the host");
+}
+
 TEST(FramePlan, SkippedStagesGoStale)
 {
   // A part moves while no mirror is in view; in the next frame the mirror appears.
@@ -225,7 +294,7 @@ TEST(FramePlan, SkippedStagesGoStale)
   frame.changes.transforms = true;
   FramePlan plan = frame.plan();
   EXPECT_FALSE(plan[Stage::Structure].run);
-  frame.caches = cachesAfter(plan, {}, frame.changes, frame.caches);
+  frame.caches = cachesAfter(plan, frame.settings, {}, frame.changes, frame.caches);
   EXPECT_TRUE(frame.caches.visibility && frame.caches.primaryImage);
   EXPECT_FALSE(frame.caches.structure || frame.caches.secondaryImage);
 
@@ -235,7 +304,7 @@ TEST(FramePlan, SkippedStagesGoStale)
   plan = frame.plan();
   EXPECT_TRUE(plan[Stage::Structure].run);
   EXPECT_STREQ(plan[Stage::Structure].reason, "no ray structure yet");
-  frame.caches = cachesAfter(plan, {}, frame.changes, frame.caches);
+  frame.caches = cachesAfter(plan, frame.settings, {}, frame.changes, frame.caches);
   EXPECT_TRUE(frame.caches.structure && frame.caches.secondaryImage);
   EXPECT_TRUE(frame.caches.geometryUploaded);
 
@@ -248,12 +317,12 @@ TEST(FramePlan, ShadowMapsGoStaleWhileShadowsAreOff)
   Frame frame;
   frame.settings.shadows = ShadowMode::Off;
   frame.changes.lightMoved[1] = true;
-  frame.caches = cachesAfter(frame.plan(), {}, frame.changes, frame.caches);
+  frame.caches = cachesAfter(frame.plan(), frame.settings, {}, frame.changes, frame.caches);
   EXPECT_EQ(frame.caches.shadowMaps, std::vector<bool>({ true, false }));
   frame.changes.lightMoved[1] = false;
   frame.settings.shadows = ShadowMode::ShadowMaps;
   frame.settingsChanges.shading = true;
-  EXPECT_EQ(running(frame.plan()), "1PRYB");
+  EXPECT_EQ(running(frame.plan()), "1PYB");
 }
 
 TEST(SettingsChanges, NameWhatTheyOutdate)
@@ -262,11 +331,14 @@ TEST(SettingsChanges, NameWhatTheyOutdate)
     Settings now;
     change(now);
     const SettingsChanges c = compareSettings(Settings(), now);
-    return std::string(c.visibility ? "V" : "") + (c.shading ? "S" : "") + (c.secondary ? "R" : "");
+    return std::string(c.visibility ? "V" : "") + (c.shading ? "S" : "") +
+      (c.secondary ? "R" : "") + (c.structure ? "T" : "");
   };
   EXPECT_EQ(compare([](Settings&) {}), "");
   EXPECT_EQ(compare([](Settings& s) { s.visibility = Visibility::DirectRendering; }), "V");
   EXPECT_EQ(compare([](Settings& s) { s.shadows = ShadowMode::Off; }), "S");
+  EXPECT_EQ(compare([](Settings& s) { s.primaryShading = PrimaryShading::CPU; }), "S");
+  EXPECT_EQ(compare([](Settings& s) { s.accelerator = Accelerator::KdTree; }), "T");
   EXPECT_EQ(compare([](Settings& s) { s.shadowMapResolution = 64; }), "S");
   EXPECT_EQ(compare([](Settings& s) { s.reflections = false; }), "R");
   EXPECT_EQ(compare([](Settings& s) { s.refractions = false; }), "R");
