@@ -98,8 +98,7 @@ bool RayCaster::shade(vtkOpenGLRenderWindow* window, const Inputs& inputs, const
   state.beginScreenPass();
   // No hit: alpha 0 in the image, NaN in the user's buffer.
   const float none = readBack ? std::numeric_limits<float>::quiet_NaN() : 0.0f;
-  const GLfloat clear[4] = { none, none, none, none };
-  glClearBufferfv(GL_COLOR, 0, clear);
+  const float noHit[4] = { none, none, none, none };
 
   ScopedTextureUnits units(kSamplerCount);
   inputs.hits.hits().bind(0);
@@ -120,6 +119,7 @@ bool RayCaster::shade(vtkOpenGLRenderWindow* window, const Inputs& inputs, const
   const float size[2] = { static_cast<float>(target.width()),
     static_cast<float>(target.height()) };
   program->SetUniform2f("viewportSize", size);
+  program->SetUniform4f("noHit", noHit);
   program->SetUniformf("shadowClearDepth", inputs.shadows.clearDepth());
   program->SetUniformi("lightCount", static_cast<int>(snapshot.lights.size()));
   program->SetUniformi("unlitScene", snapshot.lights.empty() ? 1 : 0);

@@ -22,6 +22,7 @@ uniform int unlitScene;              // no light at all
 uniform int directRendering;
 uniform int shadowLight;             // >= 0: write this light's visible share instead of a colour
 uniform vec2 viewportSize;
+uniform vec4 noHit;
 uniform vec3 rayOrigin0, rayOriginX, rayOriginY;
 uniform vec3 rayDirection0, rayDirectionX, rayDirectionY;
 out vec4 fragmentColor;
@@ -140,13 +141,8 @@ HrtSurface fetchSurface(
   return HrtSurface(ambient.rgb * ambient.w, diffuse.rgb * diffuse.w, specular.rgb, specular.w);
 }
 
-void main()
+vec4 shadeHit(uvec4 hit)
 {
-  uvec4 hit = texelFetch(hitBuffer, ivec2(gl_FragCoord.xy), 0);
-  if (hit.x == 0u)
-  {
-    discard;
-  }
   int triangle = int(hit.x - 1u);
   int part = int(texelFetch(trianglePart, triangle).r);
   ivec4 bases = texelFetch(partLayout, part * LAYOUT_TEXELS);    // first triangle, normals, colours, coordinates
@@ -192,8 +188,7 @@ void main()
 
   if (shadowLight >= 0)
   {
-    fragmentColor = vec4(lightVisibility(shadowLight, fetchLight(shadowLight), p, ng));
-    return;
+    return vec4(lightVisibility(shadowLight, fetchLight(shadowLight), p, ng));
   }
 
   HrtSurface surface = fetchSurface(part, bases, more, flags, corner, uv, front);
@@ -213,5 +208,17 @@ void main()
       }
     }
   }
-  fragmentColor = vec4(color, 1.0);
+  return vec4(color, 1.0);
+}
+
+void main()
+{
+  // A branch around all the work instead of a discard: a software rasteriser executes what follows a
+  // discard for blocks of background pixels too.
+  uvec4 hit = texelFetch(hitBuffer, ivec2(gl_FragCoord.xy), 0);
+  fragmentColor = noHit;
+  if (hit.x != 0u)
+  {
+    fragmentColor = shadeHit(hit);
+  }
 }
