@@ -60,11 +60,18 @@ struct Geometry
   int lookupWidth = 0;
   int lookupHeight = 0;
 
+  // All triangles lie in one plane: nothing of it can shadow the rest of it. See isFlat.
+  bool flat = false;
+
   glm::vec3 boundsMin{ 0.0f };           // of positions; min > max when there is no triangle
   glm::vec3 boundsMax{ -1.0f };
 
   std::size_t triangleCount() const { return cellIds.size(); }
 };
+
+// Whether every position lies in the plane of the first triangle that has an area, but for the
+// rounding of the positions themselves.
+bool isFlat(const std::vector<glm::vec3>& positions);
 
 // One side's reflection terms of vtkProperty. Ambient and diffuse coefficients are kept apart from
 // the colours because scalar colours replace both colours but neither coefficient.

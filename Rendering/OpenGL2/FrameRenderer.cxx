@@ -74,6 +74,7 @@ Caches FrameRenderer::currentCaches(const Snapshot& snapshot, const Settings& se
   }
   const std::vector<bool> present =
     this->Shadows.prepare(snapshot, wanted, settings.shadowMapResolution);
+  this->Statistics.shadowMapResolution = this->Shadows.resolution();
   caches.shadowMaps.resize(present.size(), false);
   for (std::size_t i = 0; i < present.size(); ++i)
   {

@@ -37,6 +37,7 @@ struct FrameStatistics
   std::array<double, kStageCount> milliseconds{}; // of the host, 0 for stages that did not run
   RayCounters rays;
   StructureReport structure;
+  int shadowMapResolution = 0; // texels along a side, as memory allowed
   std::uint64_t secondaryPixels = 0;
   std::uint64_t invalidIds = 0;
   std::uint64_t trianglesDrawn = 0; // rasterised, shadow maps included

@@ -14,16 +14,25 @@ namespace
 
 constexpr std::size_t kCornerBytes = sizeof(glm::vec4);
 
-// Texels of a float table of corners: three components would need OpenGL 4.0, so a fourth is added.
-std::vector<glm::vec4> padded(const std::vector<glm::vec3>& values, float w)
+// Corners a chunk while they are widened for upload: 1 MiB.
+constexpr std::size_t kChunk = 1 << 16;
+
+// Uploads a float table of corners: three components would need OpenGL 4.0, so a fourth is added, in
+// chunks rather than in a copy of the whole mesh.
+std::size_t uploadPadded(
+  TextureBuffer& table, std::size_t first, const std::vector<glm::vec3>& values, float w)
 {
   std::vector<glm::vec4> texels;
-  texels.reserve(values.size());
-  for (const glm::vec3& value : values)
+  for (std::size_t start = 0; start < values.size(); start += kChunk)
   {
-    texels.emplace_back(value, w);
+    texels.clear();
+    for (std::size_t i = start; i < std::min(start + kChunk, values.size()); ++i)
+    {
+      texels.emplace_back(values[i], w);
+    }
+    table.uploadRange((first + start) * kCornerBytes, texels.data(), texels.size() * kCornerBytes);
   }
-  return texels;
+  return values.size() * kCornerBytes;
 }
 
 } // namespace
@@ -180,8 +189,10 @@ void GeometryBuffers::uploadPart(const Part& part, const Slot& slot)
       this->UploadedBytes += values.size() * size;
     }
   };
-  put(this->Positions, 3ull * slot.firstTriangle, padded(geometry.positions, 1.0f));
-  put(this->Normals, 3ull * std::max(slot.normals, 0), padded(geometry.normals, 0.0f));
+  this->UploadedBytes +=
+    uploadPadded(this->Positions, 3ull * slot.firstTriangle, geometry.positions, 1.0f);
+  this->UploadedBytes +=
+    uploadPadded(this->Normals, 3ull * std::max(slot.normals, 0), geometry.normals, 0.0f);
   put(this->Colors, 3ull * std::max(slot.colors, 0), geometry.colors);
   put(this->Coordinates, 3ull * std::max(slot.coordinates, 0), geometry.coordinates);
   put(this->Lookups, static_cast<std::size_t>(std::max(slot.lookup, 0)), geometry.lookup);

@@ -25,9 +25,10 @@ void HitReadBack::begin(const ObjectIntersectionBuffer& hits)
     GL_PIXEL_PACK_BUFFER, static_cast<GLsizeiptr>(this->Bytes), nullptr, GL_STREAM_READ);
   // Only the first component is asked for, in direct rendering too: (u, v) is computed again in
   // double from the ray and the triangle, which is more exact than what the rasteriser interpolated.
-  glBindTexture(GL_TEXTURE_2D, hits.hits().name());
-  glGetTexImage(GL_TEXTURE_2D, 0, GL_RED_INTEGER, GL_UNSIGNED_INT, nullptr);
-  glBindTexture(GL_TEXTURE_2D, 0);
+  {
+    const ScopedTexture bound(GL_TEXTURE_2D, hits.hits().name());
+    glGetTexImage(GL_TEXTURE_2D, 0, GL_RED_INTEGER, GL_UNSIGNED_INT, nullptr);
+  }
   glBindBuffer(GL_PIXEL_PACK_BUFFER, 0);
 }
 
@@ -57,9 +58,10 @@ bool HitReadBack::readBarycentrics(
   }
   std::vector<glm::uvec4> texels(
     static_cast<std::size_t>(hits.hits().width()) * static_cast<std::size_t>(hits.hits().height()));
-  glBindTexture(GL_TEXTURE_2D, hits.hits().name());
-  glGetTexImage(GL_TEXTURE_2D, 0, GL_RGBA_INTEGER, GL_UNSIGNED_INT, texels.data());
-  glBindTexture(GL_TEXTURE_2D, 0);
+  {
+    const ScopedTexture bound(GL_TEXTURE_2D, hits.hits().name());
+    glGetTexImage(GL_TEXTURE_2D, 0, GL_RGBA_INTEGER, GL_UNSIGNED_INT, texels.data());
+  }
   barycentrics.clear();
   for (const glm::uvec4& texel : texels)
   {

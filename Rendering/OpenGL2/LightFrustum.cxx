@@ -18,11 +18,6 @@ namespace
 // caster's outline still belongs to a bilinear footprint that straddles it.
 constexpr double kBorderTexels = 2.0;
 
-// Smallest ratio of the near to the far plane of a perspective face. The depth is stored in floats,
-// reversed where possible, so this costs no precision; a light nearer than this to a caster's
-// surface lies, for all purposes, inside it.
-constexpr double kNearestRatio = 1e-4;
-
 // Margin of the near and far planes, so that no caster lies on them.
 constexpr double kDepthMargin = 1e-3;
 
@@ -44,20 +39,81 @@ struct Box
   }
 };
 
-Box casterBounds(const Snapshot& snapshot)
+Box boundsOf(const Part& part)
 {
   Box box;
-  for (const Part& part : snapshot.parts)
+  worldBounds(part, box.lower, box.upper);
+  return box;
+}
+
+Box casterBounds(const Snapshot& snapshot, const std::vector<bool>& casters)
+{
+  Box box;
+  for (std::size_t i = 0; i < snapshot.parts.size(); ++i)
   {
-    if (part.castsShadow && part.geometry->triangleCount() > 0)
+    if (casters[i])
     {
-      glm::dvec3 lower, upper;
-      worldBounds(part, lower, upper);
-      box.add(lower);
-      box.add(upper);
+      const Box part = boundsOf(snapshot.parts[i]);
+      box.add(part.lower);
+      box.add(part.upper);
     }
   }
   return box;
+}
+
+// The plane of a flat part, its normal towards the light; false when the light lies in it.
+bool litPlane(const Part& part, const Light& light, glm::dvec3& normal, glm::dvec3& point)
+{
+  const glm::dmat4 toWorld = part.positionsToWorld();
+  const std::vector<glm::vec3>& p = part.geometry->positions;
+  const auto world = [&](std::size_t i) {
+    return glm::dvec3(toWorld * glm::dvec4(glm::dvec3(p[i]), 1.0));
+  };
+  for (std::size_t i = 0; i + 2 < p.size(); i += 3)
+  {
+    point = world(i);
+    normal = glm::cross(world(i + 1) - point, world(i + 2) - point);
+    if (glm::dot(normal, normal) > 0.0)
+    {
+      break;
+    }
+  }
+  const double side = light.kind == Light::Kind::Directional
+    ? -glm::dot(normal, light.direction)
+    : glm::dot(normal, light.position - point);
+  normal = side < 0.0 ? -normal : normal;
+  return side != 0.0;
+}
+
+// All that the camera sees, the part itself apart, lies on the lit side of the part's plane.
+bool shadowsNothing(const Snapshot& snapshot, std::size_t index, const Light& light)
+{
+  const Part& part = snapshot.parts[index];
+  glm::dvec3 normal, point;
+  if (!part.geometry->flat || !litPlane(part, light, normal, point))
+  {
+    return false;
+  }
+  for (std::size_t i = 0; i < snapshot.parts.size(); ++i)
+  {
+    const Part& other = snapshot.parts[i];
+    if (i == index || !other.visibleToCamera || other.geometry->triangleCount() == 0)
+    {
+      continue;
+    }
+    const Box box = boundsOf(other);
+    // What stands on the floor touches its plane but for the rounding of its own corners.
+    const glm::dvec3 size = glm::max(glm::abs(box.lower), glm::abs(box.upper));
+    const double tolerance = 8.0 * 0x1p-24 * glm::length(normal) * glm::length(size);
+    for (int k = 0; k < 8; ++k)
+    {
+      if (glm::dot(box.corner(k) - point, normal) < -tolerance)
+      {
+        return false;
+      }
+    }
+  }
+  return true;
 }
 
 // A right-handed view frame that looks along a unit direction from a point.
@@ -100,7 +156,6 @@ LightFace directionalFace(
                        middle.y + padded, face.near, face.far) *
     view;
   face.texelConstant = 2.0 * padded / resolution;
-  face.reach = face.far - face.near;
   return face;
 }
 
@@ -116,7 +171,6 @@ LightFace perspectiveFace(const Light& light, const glm::dvec3& direction, const
                        near * tangent, near, far) *
     glm::lookAt(light.position, light.position + direction, up);
   face.texelLinear = 2.0 * tangent / resolution;
-  face.reach = far;
   return face;
 }
 
@@ -131,7 +185,8 @@ void distanceRange(const Box& box, const glm::dvec3& p, double& nearest, double&
   }
 }
 
-std::vector<LightFace> positionalFaces(const Light& light, const Box& casters, int resolution)
+std::vector<LightFace> positionalFaces(
+  const Light& light, const Box& casters, int resolution, double nearestRatio)
 {
   double nearest = 0.0, farthest = 0.0;
   distanceRange(casters, light.position, nearest, farthest);
@@ -144,8 +199,9 @@ std::vector<LightFace> positionalFaces(const Light& light, const Box& casters, i
   if (light.coneAngle <= kWidestSpot)
   {
     // Within the cone a caster at distance r lies at least r * cos(cone) ahead.
-    const double half = glm::radians(double(light.coneAngle));
-    const double near = std::max(nearest * std::cos(half) * (1.0 - kDepthMargin), far * kNearestRatio);
+    const double half = glm::radians(std::max(double(light.coneAngle), kNarrowestSpot));
+    const double near =
+      std::max(nearest * std::cos(half) * (1.0 - kDepthMargin), far * nearestRatio);
     const glm::dvec3 up =
       std::abs(light.direction.y) < 0.9 ? glm::dvec3(0, 1, 0) : glm::dvec3(1, 0, 0);
     faces.push_back(perspectiveFace(light, light.direction, up, half, near, far, resolution));
@@ -153,7 +209,7 @@ std::vector<LightFace> positionalFaces(const Light& light, const Box& casters, i
   }
   // On a cube face a caster at distance r lies at least r / sqrt(3) ahead.
   const double near =
-    std::max(nearest / std::sqrt(3.0) * (1.0 - kDepthMargin), far * kNearestRatio);
+    std::max(nearest / std::sqrt(3.0) * (1.0 - kDepthMargin), far * nearestRatio);
   for (int axis = 0; axis < 3; ++axis)
   {
     for (double sign : { 1.0, -1.0 })
@@ -171,18 +227,32 @@ std::vector<LightFace> positionalFaces(const Light& light, const Box& casters, i
 } // namespace
 
 //------------------------------------------------------------------------------
-std::vector<LightFace> fitLightFaces(const Snapshot& snapshot, const Light& light, int resolution)
+std::vector<bool> castersFor(const Snapshot& snapshot, const Light& light)
 {
-  const Box casters = casterBounds(snapshot);
-  if (!casters.valid())
+  std::vector<bool> casters;
+  for (std::size_t i = 0; i < snapshot.parts.size(); ++i)
+  {
+    const Part& part = snapshot.parts[i];
+    casters.push_back(part.castsShadow && part.geometry->triangleCount() > 0 &&
+      !shadowsNothing(snapshot, i, light));
+  }
+  return casters;
+}
+
+//------------------------------------------------------------------------------
+std::vector<LightFace> fitLightFaces(const Snapshot& snapshot, const Light& light,
+  const std::vector<bool>& casters, int resolution, double nearestRatio)
+{
+  const Box bounds = casterBounds(snapshot, casters);
+  if (!bounds.valid())
   {
     return {};
   }
   if (light.kind == Light::Kind::Directional)
   {
-    return { directionalFace(snapshot, light, casters, resolution) };
+    return { directionalFace(snapshot, light, bounds, resolution) };
   }
-  return positionalFaces(light, casters, resolution);
+  return positionalFaces(light, bounds, resolution, nearestRatio);
 }
 
 } // namespace gl

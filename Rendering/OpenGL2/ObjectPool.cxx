@@ -3,10 +3,27 @@
 
 #include "vtkOpenGLRenderWindow.h"
 
+#include <stdexcept>
+#include <string>
+
 namespace hrt
 {
 namespace gl
 {
+namespace
+{
+
+// Storage that the driver would not give; caught where a frame is rendered.
+void checkMemory(const char* what, std::size_t size)
+{
+  if (glGetError() == GL_OUT_OF_MEMORY)
+  {
+    throw std::runtime_error(
+      std::string("OpenGL has no memory for ") + what + " of size " + std::to_string(size));
+  }
+}
+
+} // namespace
 
 //------------------------------------------------------------------------------
 ObjectPool::ObjectPool(vtkOpenGLRenderWindow* window)
@@ -100,10 +117,12 @@ void TextureBuffer::upload(const void* data, std::size_t bytes, GLenum usage)
   glBindBuffer(GL_TEXTURE_BUFFER, this->Buffer);
   glBufferData(GL_TEXTURE_BUFFER,
     static_cast<GLsizeiptr>(bytes ? bytes : sizeof(zeroTexel)), bytes ? data : zeroTexel, usage);
-  glBindTexture(GL_TEXTURE_BUFFER, this->Texture);
-  glTexBuffer(GL_TEXTURE_BUFFER, this->InternalFormat, this->Buffer);
-  glBindTexture(GL_TEXTURE_BUFFER, 0);
+  {
+    const ScopedTexture bound(GL_TEXTURE_BUFFER, this->Texture);
+    glTexBuffer(GL_TEXTURE_BUFFER, this->InternalFormat, this->Buffer);
+  }
   glBindBuffer(GL_TEXTURE_BUFFER, 0);
+  checkMemory("a table of the scene", bytes);
 }
 
 //------------------------------------------------------------------------------
@@ -135,30 +154,32 @@ bool Image2D::allocate(int width, int height, GLenum internalFormat, GLenum form
   {
     return false;
   }
-  this->Width = width;
-  this->Height = height;
+  this->Width = this->Height = 0; // until the storage is there
   this->InternalFormat = internalFormat;
   this->Format = format;
   this->Type = type;
-  glBindTexture(GL_TEXTURE_2D, this->Texture);
-  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
-  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
-  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
-  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
-  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAX_LEVEL, 0);
-  glTexImage2D(GL_TEXTURE_2D, 0, static_cast<GLint>(internalFormat), width, height, 0, format, type,
-    nullptr);
-  glBindTexture(GL_TEXTURE_2D, 0);
+  {
+    const ScopedTexture bound(GL_TEXTURE_2D, this->Texture);
+    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
+    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
+    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
+    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
+    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAX_LEVEL, 0);
+    glTexImage2D(GL_TEXTURE_2D, 0, static_cast<GLint>(internalFormat), width, height, 0, format,
+      type, nullptr);
+  }
+  checkMemory("a picture", std::size_t(width) * height);
+  this->Width = width;
+  this->Height = height;
   return true;
 }
 
 //------------------------------------------------------------------------------
 void Image2D::upload(const void* pixels)
 {
-  glBindTexture(GL_TEXTURE_2D, this->Texture);
+  const ScopedTexture bound(GL_TEXTURE_2D, this->Texture);
   glTexSubImage2D(
     GL_TEXTURE_2D, 0, 0, 0, this->Width, this->Height, this->Format, this->Type, pixels);
-  glBindTexture(GL_TEXTURE_2D, 0);
 }
 
 //------------------------------------------------------------------------------
@@ -170,21 +191,42 @@ void Image2D::bind(int unit) const
 
 //------------------------------------------------------------------------------
 ScopedTextureUnits::ScopedTextureUnits(int count)
-  : Count(count)
+  : Units(static_cast<std::size_t>(count))
 {
   glGetIntegerv(GL_ACTIVE_TEXTURE, &this->Active);
+  for (std::size_t unit = 0; unit < this->Units.size(); ++unit)
+  {
+    glActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(unit));
+    glGetIntegerv(GL_TEXTURE_BINDING_2D, &this->Units[unit].texture2D);
+    glGetIntegerv(GL_TEXTURE_BINDING_BUFFER, &this->Units[unit].textureBuffer);
+  }
 }
 
 //------------------------------------------------------------------------------
 ScopedTextureUnits::~ScopedTextureUnits()
 {
-  for (int unit = 0; unit < this->Count; ++unit)
+  for (std::size_t unit = 0; unit < this->Units.size(); ++unit)
   {
     glActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(unit));
-    glBindTexture(GL_TEXTURE_2D, 0);
-    glBindTexture(GL_TEXTURE_BUFFER, 0);
+    glBindTexture(GL_TEXTURE_2D, static_cast<GLuint>(this->Units[unit].texture2D));
+    glBindTexture(GL_TEXTURE_BUFFER, static_cast<GLuint>(this->Units[unit].textureBuffer));
   }
   glActiveTexture(static_cast<GLenum>(this->Active));
+}
+
+//------------------------------------------------------------------------------
+ScopedTexture::ScopedTexture(GLenum target, GLuint texture)
+  : Target(target)
+{
+  glGetIntegerv(
+    target == GL_TEXTURE_2D ? GL_TEXTURE_BINDING_2D : GL_TEXTURE_BINDING_BUFFER, &this->Before);
+  glBindTexture(target, texture);
+}
+
+//------------------------------------------------------------------------------
+ScopedTexture::~ScopedTexture()
+{
+  glBindTexture(this->Target, static_cast<GLuint>(this->Before));
 }
 
 } // namespace gl

@@ -91,7 +91,8 @@ private:
 };
 
 // Texture units are bound with raw calls while a pass draws; VTK's state cache must find the active
-// unit as it left it, and no texture of ours bound where VTK does not expect one.
+// unit as it left it, and every texture where VTK has bound it: the environment maps of physically
+// based actors, for one, stay bound through the whole frame.
 class ScopedTextureUnits
 {
 public:
@@ -101,8 +102,27 @@ public:
   ScopedTextureUnits& operator=(const ScopedTextureUnits&) = delete;
 
 private:
-  int Count;
+  struct Unit
+  {
+    GLint texture2D = 0;
+    GLint textureBuffer = 0;
+  };
+  std::vector<Unit> Units;
   GLint Active = 0;
+};
+
+// Binds a texture to the active unit for the time it lives.
+class ScopedTexture
+{
+public:
+  ScopedTexture(GLenum target, GLuint texture);
+  ~ScopedTexture();
+  ScopedTexture(const ScopedTexture&) = delete;
+  ScopedTexture& operator=(const ScopedTexture&) = delete;
+
+private:
+  GLenum Target;
+  GLint Before = 0;
 };
 
 } // namespace gl

@@ -126,6 +126,7 @@ bool RayCaster::shade(vtkOpenGLRenderWindow* window, const Inputs& inputs, const
   program->SetUniformi(
     "directRendering", inputs.hits.visibility() == Visibility::DirectRendering ? 1 : 0);
   program->SetUniformi("shadowLight", shadowLight);
+  program->SetUniformi("triangleLimit", static_cast<int>(snapshot.triangleCount));
   setRays(program, snapshot.camera.viewRays());
 
   glBindVertexArray(this->VertexArray);

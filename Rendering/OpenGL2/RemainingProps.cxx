@@ -17,6 +17,22 @@ namespace hrt
 {
 namespace gl
 {
+namespace
+{
+
+bool anyTranslucent(const vtkRenderState& state)
+{
+  for (int i = 0; i < state.GetPropArrayCount(); ++i)
+  {
+    if (state.GetPropArray()[i]->HasTranslucentPolygonalGeometry())
+    {
+      return true;
+    }
+  }
+  return false;
+}
+
+} // namespace
 
 //------------------------------------------------------------------------------
 RemainingProps::RemainingProps() = default;
@@ -41,12 +57,17 @@ int RemainingProps::draw(
   }
   vtkRenderState rest(renderer);
   rest.SetFrameBuffer(state->GetFrameBuffer());
+  rest.SetRequiredKeys(state->GetRequiredKeys());
   rest.SetPropArrayAndCount(left.data(), static_cast<int>(left.size()));
 
   int drawn = 0;
   this->Opaque->Render(&rest);
   drawn += this->Opaque->GetNumberOfRenderedProps();
-  drawn += this->drawTranslucent(rest);
+  const bool translucent = anyTranslucent(rest);
+  // As vtkOpenGLRenderer decides it: then the peeling pass draws the volumes too.
+  const bool peelsVolumes = translucent && renderer->GetUseDepthPeeling() &&
+    renderer->GetUseDepthPeelingForVolumes();
+  drawn += translucent ? this->drawTranslucent(rest, peelsVolumes) : 0;
 
   if (renderer->GetUseFXAA())
   {
@@ -62,12 +83,16 @@ int RemainingProps::draw(
     this->FXAA->Execute(static_cast<vtkOpenGLRenderer*>(renderer));
   }
 
-  this->Volumetric->Render(&rest);
-  drawn += this->Volumetric->GetNumberOfRenderedProps();
+  if (!peelsVolumes)
+  {
+    this->Volumetric->Render(&rest);
+    drawn += this->Volumetric->GetNumberOfRenderedProps();
+  }
 
   // A traced actor may still have an overlay part, so that all props take part here.
   vtkRenderState overlays(renderer);
   overlays.SetFrameBuffer(state->GetFrameBuffer());
+  overlays.SetRequiredKeys(state->GetRequiredKeys());
   overlays.SetPropArrayAndCount(all.data(), static_cast<int>(all.size()));
   this->Overlay->Render(&overlays);
   drawn += this->Overlay->GetNumberOfRenderedProps();
@@ -75,17 +100,8 @@ int RemainingProps::draw(
 }
 
 //------------------------------------------------------------------------------
-int RemainingProps::drawTranslucent(const vtkRenderState& state)
+int RemainingProps::drawTranslucent(const vtkRenderState& state, bool withVolumes)
 {
-  bool any = false;
-  for (int i = 0; i < state.GetPropArrayCount() && !any; ++i)
-  {
-    any = state.GetPropArray()[i]->HasTranslucentPolygonalGeometry() != 0;
-  }
-  if (!any)
-  {
-    return 0;
-  }
   vtkRenderer* renderer = state.GetRenderer();
   vtkRenderPass* pass = nullptr;
   if (renderer->GetUseDepthPeeling())
@@ -96,6 +112,7 @@ int RemainingProps::drawTranslucent(const vtkRenderState& state)
     }
     auto* peeling = static_cast<vtkDualDepthPeelingPass*>(this->Peeling.GetPointer());
     peeling->SetTranslucentPass(this->Translucent);
+    peeling->SetVolumetricPass(withVolumes ? this->Volumetric.GetPointer() : nullptr);
     peeling->SetMaximumNumberOfPeels(renderer->GetMaximumNumberOfPeels());
     peeling->SetOcclusionRatio(renderer->GetOcclusionRatio());
     pass = peeling;

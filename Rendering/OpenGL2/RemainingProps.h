@@ -36,7 +36,7 @@ public:
   void releaseGraphicsResources(vtkWindow* window);
 
 private:
-  int drawTranslucent(const vtkRenderState& state);
+  int drawTranslucent(const vtkRenderState& state, bool withVolumes);
 
   vtkNew<vtkOpaquePass> Opaque;
   vtkNew<vtkTranslucentPass> Translucent;

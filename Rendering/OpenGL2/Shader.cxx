@@ -11,6 +11,7 @@
 #include "RayCaster_fs.h"
 #include "Shading.h"
 
+#include <locale>
 #include <sstream>
 
 namespace hrt
@@ -23,6 +24,7 @@ namespace
 std::string definitions()
 {
   std::ostringstream text;
+  text.imbue(std::locale::classic()); // a host may have set one with decimal commas
   text.precision(9);
   text << std::showpoint;
   text << "#define real float\n#define HRT_FUNCTION\n";
@@ -31,6 +33,7 @@ std::string definitions()
   text << "#define LIGHT_TEXELS " << kLightTexels << "\n";
   text << "#define FACE_TEXELS " << kFaceTexels << "\n";
   text << "#define FACE_SEAM " << kFaceSeam << "\n";
+  text << "#define ROUNDING " << kRounding << "\n";
   text << "#define MINIMUM_COSINE2 " << kMinimumCosine2 << "\n";
   return text.str();
 }

@@ -74,7 +74,9 @@ std::vector<bool> ShadowMaps::prepare(
   const int rows = std::max(1, (faces + columns - 1) / columns);
   GLint limit = 0;
   glGetIntegerv(GL_MAX_TEXTURE_SIZE, &limit);
-  const int fitted = std::min(resolution, static_cast<int>(limit) / columns);
+  const auto affordable =
+    static_cast<int>(std::sqrt(kAtlasBytes / sizeof(float) / double(columns * rows)));
+  const int fitted = std::min({ resolution, static_cast<int>(limit) / columns, affordable });
 
   bool lost = fitted != this->Resolution || columns != this->Columns;
   this->Resolution = fitted;
@@ -90,7 +92,7 @@ std::vector<bool> ShadowMaps::prepare(
   {
     const auto old = std::find_if(this->Maps.begin(), this->Maps.end(), [&](const Map& m) {
       return m.key == maps[i].key && m.firstFace == maps[i].firstFace &&
-        m.faceCount == maps[i].faceCount && m.valid;
+        m.faceCount == maps[i].faceCount && m.drawn;
     });
     if (old != this->Maps.end())
     {
@@ -103,7 +105,7 @@ std::vector<bool> ShadowMaps::prepare(
   for (std::size_t i = 0; i < maps.size(); ++i)
   {
     this->Slots[i].firstFace = maps[i].firstFace;
-    this->Slots[i].faceCount = maps[i].valid ? maps[i].faceCount : 0;
+    this->Slots[i].faceCount = static_cast<int>(maps[i].faces.size());
   }
   return present;
 }
@@ -139,18 +141,21 @@ bool ShadowMaps::draw(vtkOpenGLRenderWindow* window, const Snapshot& snapshot,
     {
       continue;
     }
-    map.faces = fitLightFaces(snapshot, snapshot.lights[i], this->Resolution);
-    map.valid = static_cast<int>(map.faces.size()) == map.faceCount;
+    const std::vector<bool> casters = castersFor(snapshot, snapshot.lights[i]);
+    map.faces = fitLightFaces(snapshot, snapshot.lights[i], casters, this->Resolution,
+      this->Convention.reversed ? kNearestRatioReversed : kNearestRatioPlain);
+    map.drawn = true;
     for (std::size_t k = 0; k < map.faces.size(); ++k)
     {
       const glm::ivec2 at = this->tile(map.firstFace + static_cast<int>(k));
       target.setViewport(at.x, at.y, this->Resolution, this->Resolution);
       glClearBufferfv(GL_DEPTH, 0, &clear);
       const glm::dmat4 toClip = this->Convention.drawMatrix(map.faces[k].worldToClip);
-      for (const Part& part : snapshot.parts)
+      for (std::size_t p = 0; p < casters.size(); ++p)
       {
-        if (part.castsShadow && part.geometry->triangleCount() > 0)
+        if (casters[p])
         {
+          const Part& part = snapshot.parts[p];
           glm::mat4 matrix(toClip * part.positionsToWorld());
           program->SetUniformMatrix4x4("positionToClip", &matrix[0][0]);
           geometry.draw(part);
@@ -158,7 +163,7 @@ bool ShadowMaps::draw(vtkOpenGLRenderWindow* window, const Snapshot& snapshot,
         }
       }
     }
-    this->Slots[i].faceCount = map.valid ? map.faceCount : 0;
+    this->Slots[i].faceCount = static_cast<int>(map.faces.size());
   }
   glBindVertexArray(0);
   releaseProgram(window);
@@ -169,16 +174,6 @@ bool ShadowMaps::draw(vtkOpenGLRenderWindow* window, const Snapshot& snapshot,
 void ShadowMaps::updateTable(const Snapshot& snapshot)
 {
   const glm::dmat4 viewToWorld = glm::inverse(snapshot.camera.worldToView);
-  // Extent of the numbers that the shader computes with: the scene as seen from the eye.
-  double extent = 0.0;
-  for (int k = 0; k < 8; ++k)
-  {
-    const glm::dvec3 corner(k & 1 ? snapshot.boundsMax.x : snapshot.boundsMin.x,
-      k & 2 ? snapshot.boundsMax.y : snapshot.boundsMin.y,
-      k & 4 ? snapshot.boundsMax.z : snapshot.boundsMin.z);
-    extent = std::max(
-      extent, glm::length(glm::dvec3(snapshot.camera.worldToView * glm::dvec4(corner, 1.0))));
-  }
   const double bend = std::sqrt(2.0) * std::tan(glm::radians(kSmoothFold));
 
   std::vector<glm::vec4> table;
@@ -186,8 +181,9 @@ void ShadowMaps::updateTable(const Snapshot& snapshot)
   {
     for (int k = 0; k < map.faceCount; ++k)
     {
-      // A face that has never been drawn keeps its place; its slot says that nobody looks there.
-      const LightFace face = map.valid ? map.faces[static_cast<std::size_t>(k)] : LightFace();
+      // A face that is not drawn keeps its place; its slot says that nobody looks there.
+      const bool drawn = static_cast<std::size_t>(k) < map.faces.size();
+      const LightFace face = drawn ? map.faces[static_cast<std::size_t>(k)] : LightFace();
       const glm::dmat4 toStored =
         this->Convention.storedDepthMatrix(face.worldToClip) * viewToWorld;
       const glm::dmat4 planes = glm::inverseTranspose(toStored);
@@ -206,8 +202,8 @@ void ShadowMaps::updateTable(const Snapshot& snapshot)
       const double quadratic =
         face.perspective && !this->Convention.reversed ? kRounding / face.near : 0.0;
       table.emplace_back(static_cast<float>(face.texelConstant),
-        static_cast<float>(face.texelLinear),
-        static_cast<float>(kRounding * (extent + face.reach)), static_cast<float>(quadratic));
+        static_cast<float>(face.texelLinear), static_cast<float>(face.near),
+        static_cast<float>(quadratic));
     }
   }
   this->Faces.upload(table.data(), table.size() * sizeof(glm::vec4), GL_STREAM_DRAW);

@@ -5,7 +5,8 @@
 // Bias, from stated bounds instead of scene-tuned constants. The ray caster compares the stored depth
 // at a texel's centre with the depth of the receiver's own plane on that line of sight, so a plane
 // cannot shadow itself at any slope. What is left:
-//  - rounding: both depths come from float arithmetic, see kRounding;
+//  - rounding: both depths come from float arithmetic, see kRounding; no part that lies in one plane
+//    needs more than this;
 //  - bend: between the point and the texel's centre, at most sqrt(2) texels away (bilinear taps), the
 //    mesh may fold towards the light. A fold by the angle f rises by distance * tan(f) over the plane;
 //    seen from the light at cosine c the distance is sqrt(2) * texel / c and the rise in depth another
@@ -33,7 +34,7 @@ namespace gl
 
 // A face's entry in the shader's table: 0-3 view to (x, y, stored depth, w), 4-7 the matrix that
 // maps planes likewise, 8 stored depth to distance, 9 (tile origin, tile size, bend factor),
-// 10 (texel size: constant, linear; rounding: constant, quadratic).
+// 10 (texel size: constant, linear; depth of the near plane; rounding: quadratic).
 inline constexpr int kFaceTexels = 11;
 
 // Share by which a point may lie outside of every cube face through rounding (float, 2^-24 per
@@ -48,9 +49,14 @@ inline constexpr float kMinimumCosine2 = 0.03f;
 // within a texel; a sphere of 30 facets around its equator folds by 12.
 inline constexpr double kSmoothFold = 15.0;
 
-// Relative error of a distance computed in float through two matrix products and one division:
-// about 16 roundings of 2^-24 each.
-inline constexpr double kRounding = 16.0 / (1 << 24);
+// Error of a distance computed in float through two matrix products and one division, relative to
+// the largest number involved - the distances from the eye and from the light: about 16 roundings of
+// 2^-24 each.
+inline constexpr float kRounding = 16.0f / (1 << 24);
+
+// Memory for the depths of all lights' maps, in bytes. When their number asks for more, all maps get a
+// lower resolution; statistics tell which.
+inline constexpr double kAtlasBytes = 256.0 * (1 << 20);
 
 class ShadowMaps
 {
@@ -77,7 +83,8 @@ public:
 
   float clearDepth() const { return this->Convention.clearDepth(); }
   std::uint64_t trianglesDrawn() const { return this->TrianglesDrawn; }
-  // Texels along a side of a tile; below the wish when the atlas would exceed the texture limit.
+  // Texels along a side of a tile; below the wish when the atlas would exceed kAtlasBytes or the
+  // context's texture size.
   int resolution() const { return this->Resolution; }
 
 private:
@@ -85,9 +92,9 @@ private:
   {
     std::uint64_t key = 0;
     int firstFace = 0;
-    int faceCount = 0;
-    bool valid = false;
-    std::vector<LightFace> faces;
+    int faceCount = 0;            // tiles kept for it
+    bool drawn = false;
+    std::vector<LightFace> faces; // none when no part can shadow anything
   };
 
   glm::ivec2 tile(int face) const;

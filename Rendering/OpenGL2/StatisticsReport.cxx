@@ -2,6 +2,7 @@
 #include "Rendering/OpenGL2/StatisticsReport.h"
 
 #include <cstdio>
+#include <locale>
 #include <sstream>
 
 namespace hrt
@@ -93,6 +94,7 @@ std::string statisticsReport(const FrameStatistics& statistics, const Snapshot& 
   const std::vector<std::pair<std::string, std::string>>& leftToVTK)
 {
   std::ostringstream out;
+  out.imbue(std::locale::classic()); // JSON knows no decimal commas
   {
     Object report(out);
     {
@@ -142,6 +144,7 @@ std::string statisticsReport(const FrameStatistics& statistics, const Snapshot& 
         left.text(actor.first, actor.second);
       }
     }
+    report.number("shadow_map_resolution", statistics.shadowMapResolution);
     report.number("triangles", snapshot.triangleCount);
     report.number("parts", snapshot.parts.size());
     report.number("lights", snapshot.lights.size());

@@ -12,14 +12,16 @@
 #include "vtkCommand.h"
 #include "vtkImageData.h"
 #include "vtkObjectFactory.h"
+#include "vtkOpenGLFramebufferObject.h"
 #include "vtkOpenGLRenderWindow.h"
+#include "vtkOpenGLState.h"
 #include "vtkProp.h"
 #include "vtkPropCollection.h"
 #include "vtkRenderState.h"
 #include "vtkRenderer.h"
 
 #include <algorithm>
-#include <sstream>
+#include <exception>
 #include <utility>
 
 vtkStandardNewMacro(vtkHybridRayTracingPass);
@@ -248,7 +250,39 @@ void vtkHybridRayTracingPass::Render(const vtkRenderState* s)
     vtkErrorMacro("the renderer has no OpenGL render window");
     return;
   }
-  this->UpdateCamera(renderer);
+  auto* framebuffer = vtkOpenGLFramebufferObject::SafeDownCast(s->GetFrameBuffer());
+  if (!framebuffer)
+  {
+    int size[2], origin[2];
+    this->UpdateCamera(renderer);
+    renderer->GetTiledSizeAndOrigin(&size[0], &size[1], &origin[0], &origin[1]);
+    this->RenderPicture(s, window, size, origin);
+    return;
+  }
+  // Another pass has made us its delegate and wants its own framebuffer filled, as vtkCameraPass
+  // would do it.
+  int size[2];
+  const int origin[2] = { 0, 0 };
+  framebuffer->GetLastSize(size);
+  vtkOpenGLState* state = window->GetState();
+  vtkOpenGLState::ScopedglViewport viewport(state);
+  vtkOpenGLState::ScopedglScissor scissor(state);
+  vtkOpenGLState::ScopedglEnableDisable scissorTest(state, GL_SCISSOR_TEST);
+  state->vtkglViewport(0, 0, size[0], size[1]);
+  state->vtkglEnable(GL_SCISSOR_TEST);
+  state->vtkglScissor(0, 0, size[0], size[1]);
+  if (window->GetErase() && renderer->GetErase())
+  {
+    renderer->Clear();
+  }
+  this->RenderPicture(s, window, size, origin);
+}
+
+//------------------------------------------------------------------------------
+void vtkHybridRayTracingPass::RenderPicture(const vtkRenderState* s,
+  vtkOpenGLRenderWindow* window, const int size[2], const int origin[2])
+{
+  vtkRenderer* renderer = s->GetRenderer();
   this->UpdateLightGeometry(renderer);
   this->UpdateLights(renderer);
   if (renderer->GetSelector())
@@ -258,15 +292,50 @@ void vtkHybridRayTracingPass::Render(const vtkRenderState* s)
     this->NumberOfRenderedProps = s->GetPropArrayCount();
     return;
   }
-  int width = 0, height = 0, x = 0, y = 0;
-  renderer->GetTiledSizeAndOrigin(&width, &height, &x, &y);
-  if (width <= 0 || height <= 0)
+  if (size[0] <= 0 || size[1] <= 0)
   {
     return;
   }
+  std::string error;
+  try
+  {
+    error = this->TraceFrame(s, window, size, origin);
+  }
+  catch (const std::exception& exception)
+  {
+    // Not even for want of memory may an exception cross VTK.
+    error = exception.what();
+    this->Internals->Renderer.reset();
+  }
+  if (!error.empty())
+  {
+    vtkErrorMacro("the frame is drawn by VTK alone: " << error);
+    this->Internals->Statistics = "{}";
+    this->UpdateGeometry(renderer, s->GetFrameBuffer());
+    this->NumberOfRenderedProps = s->GetPropArrayCount();
+    return;
+  }
+  vtkHybridScene* scene = this->Internals->Scene;
+  const auto isTraced = [scene](vtkProp* prop) { return scene->IsDrawnByTracer(prop); };
+  this->NumberOfRenderedProps =
+    static_cast<int>(std::count_if(
+      s->GetPropArray(), s->GetPropArray() + s->GetPropArrayCount(), isTraced)) +
+    this->Internals->Remaining.draw(s, isTraced);
 
+  const GLenum glError = glGetError();
+  if (glError != GL_NO_ERROR)
+  {
+    vtkErrorMacro("OpenGL reported error 0x" << std::hex << glError << std::dec);
+  }
+}
+
+//------------------------------------------------------------------------------
+std::string vtkHybridRayTracingPass::TraceFrame(const vtkRenderState* s,
+  vtkOpenGLRenderWindow* window, const int size[2], const int origin[2])
+{
   vtkInternals& in = *this->Internals;
-  in.Scene->Update(renderer);
+  vtkRenderer* renderer = s->GetRenderer();
+  in.Scene->Update(renderer, size[0], size[1]);
   const std::shared_ptr<const hrt::Snapshot> snapshot = in.Scene->GetSnapshot();
 
   hrt::Settings settings;
@@ -283,13 +352,11 @@ void vtkHybridRayTracingPass::Render(const vtkRenderState* s)
   settings.maximumDepth = this->MaximumDepth;
 
   hrt::gl::FrameRenderer& frame = in.Frame(window);
-  std::string error = frame.render(snapshot, in.Scene->GetChanges(), settings, x, y);
+  const std::string error =
+    frame.render(snapshot, in.Scene->GetChanges(), settings, origin[0], origin[1]);
   if (!error.empty())
   {
-    vtkErrorMacro("the frame is drawn by VTK alone: " << error);
-    this->UpdateGeometry(renderer, s->GetFrameBuffer());
-    this->NumberOfRenderedProps = s->GetPropArrayCount();
-    return;
+    return error;
   }
   if (!in.Buffers.names().empty())
   {
@@ -298,28 +365,19 @@ void vtkHybridRayTracingPass::Render(const vtkRenderState* s)
     {
       in.Buffers.invalidate();
     }
-    if (!in.Buffers.current())
+    const std::string missing =
+      in.Buffers.current() ? std::string() : in.Buffers.update(frame, *snapshot);
+    if (!missing.empty())
     {
-      error = in.Buffers.update(frame, *snapshot);
-      if (!error.empty())
-      {
-        vtkErrorMacro("the buffers are not available: " << error);
-      }
+      vtkErrorMacro("the buffers are not available: " << missing);
     }
   }
-
   std::vector<std::pair<std::string, std::string>> left;
-  int traced = 0;
-  const auto isTraced = [&](vtkProp* prop) { return in.Scene->IsDrawnByTracer(prop); };
   for (int i = 0; i < s->GetPropArrayCount(); ++i)
   {
     vtkProp* prop = s->GetPropArray()[i];
     const std::string reason = in.Scene->GetReasonLeftToVTK(prop);
-    if (isTraced(prop))
-    {
-      ++traced;
-    }
-    else if (!reason.empty())
+    if (!reason.empty())
     {
       // By its place among the renderer's view props, which a script can look up.
       const int place = renderer->GetViewProps()->IsItemPresent(prop) - 1;
@@ -327,12 +385,6 @@ void vtkHybridRayTracingPass::Render(const vtkRenderState* s)
         std::string(prop->GetClassName()) + " #" + std::to_string(place), reason);
     }
   }
-  this->NumberOfRenderedProps = traced + in.Remaining.draw(s, isTraced);
   in.Statistics = hrt::gl::statisticsReport(frame.statistics(), *snapshot, left);
-
-  const GLenum glError = glGetError();
-  if (glError != GL_NO_ERROR)
-  {
-    vtkErrorMacro("OpenGL reported error 0x" << std::hex << glError << std::dec);
-  }
+  return {};
 }

@@ -22,8 +22,10 @@
  * One ray or sample a pixel: vtkRenderWindow::SetMultiSamples smooths what VTK draws, not the traced
  * surfaces; vtkRenderer::UseFXAA smooths both.
  *
- * Framebuffer in: the one bound when Render is called (the renderer's). Framebuffer out: colour and
- * depth of the renderer's viewport. The render state is not modified.
+ * Framebuffer in: the one bound when Render is called: the renderer's, or that of the render state
+ * when another pass has this one as its delegate. Framebuffer out: its colour and depth within the
+ * renderer's viewport, or wholly. The render state is not modified. vtkRenderer::UseSSAO and
+ * UseHiddenLineRemoval have no effect, as with any pass.
  *
  * @sa vtkHybridMaterial
  */
@@ -39,6 +41,7 @@
 #include <vector> // for std::vector
 
 class vtkImageData;
+class vtkOpenGLRenderWindow;
 class vtkProp;
 
 class VTKHYBRIDRENDERINGOPENGL2_EXPORT vtkHybridRayTracingPass : public vtkRenderPass
@@ -122,9 +125,10 @@ public:
 
   ///@{
   /**
-   * Texels along each side of a shadow map (of each of the six faces for a point light). A map
-   * takes 4 bytes a texel. Range [16, 16384], clamped; less when the context's textures are
-   * smaller. Default: 2048.
+   * Texels along each side of a shadow map (of each of the six faces for a point light). Range [16,
+   * 16384], clamped. All maps together take at most 256 MiB, at 4 bytes a texel, and no more than
+   * one texture of the context holds: with many lights each gets less, see "shadow_map_resolution"
+   * in GetStatistics. Default: 2048.
    */
   void SetShadowMapResolution(int resolution);
   vtkGetMacro(ShadowMapResolution, int);
@@ -207,6 +211,13 @@ protected:
 private:
   vtkHybridRayTracingPass(const vtkHybridRayTracingPass&) = delete;
   void operator=(const vtkHybridRayTracingPass&) = delete;
+
+  // Draws everything into the bound framebuffer, size pixels large from origin on.
+  void RenderPicture(const vtkRenderState* s, vtkOpenGLRenderWindow* window, const int size[2],
+    const int origin[2]);
+  // The traced part of it; what went wrong, or empty.
+  std::string TraceFrame(const vtkRenderState* s, vtkOpenGLRenderWindow* window,
+    const int size[2], const int origin[2]);
 
   int Visibility = ItemBuffer;
   int PrimaryShading = GPU;

@@ -65,6 +65,8 @@ const char* describe(LeftToVTK reason)
   {
     case LeftToVTK::No:
       return "";
+    case LeftToVTK::NoActor:
+      return "it holds a prop that is not an actor";
     case LeftToVTK::NoMapper:
       return "the actor has no mapper and draws itself";
     case LeftToVTK::OtherActor:

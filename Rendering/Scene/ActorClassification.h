@@ -18,6 +18,7 @@ enum class LeftToVTK
   No, // the tracer draws it
 
   // The actor has no surface that rays could meet, or none that is known.
+  NoActor, // within an assembly: a volume, an image, axes, ...
   NoMapper,
   OtherActor,
   OtherMapper,

@@ -1,5 +1,5 @@
 // Walks the view props by their assembly paths. The paths are collected before anything is done
-// with them: updating a pipeline may run user code that changes the very collections walked here.
+// with them, so that the walk itself is over when pipelines are updated.
 
 #include "Rendering/Scene/ActorPaths.h"
 
@@ -48,9 +48,10 @@ glm::dmat4 matrixOf(vtkAssemblyNode* node)
 }
 
 //------------------------------------------------------------------------------
-// Reads a path that ends in an actor; false for any other.
-bool readPath(vtkAssemblyPath* source, ActorPath& path)
+// Reads a path; without an actor when it ends in another kind of prop.
+ActorPath readPath(vtkAssemblyPath* source)
 {
+  ActorPath path;
   vtkAssemblyNode* parent = nullptr;
   vtkAssemblyNode* last = nullptr;
   vtkCollectionSimpleIterator it;
@@ -63,9 +64,10 @@ bool readPath(vtkAssemblyPath* source, ActorPath& path)
     path.visible = path.visible && node->GetViewProp()->GetVisibility();
   }
   path.actor = last ? vtkActor::SafeDownCast(last->GetViewProp()) : nullptr;
+  path.key = keyOf(path.props);
   if (!path.actor)
   {
-    return false;
+    return path;
   }
   path.localToWorld = matrixOf(last);
   if (parent && path.actor->IsA("vtkFollower"))
@@ -75,8 +77,7 @@ bool readPath(vtkAssemblyPath* source, ActorPath& path)
     path.actor->ComputeMatrix();
     path.localToWorld = matrixOf(parent) * toMatrix(path.actor->GetMatrix());
   }
-  path.key = keyOf(path.props);
-  return true;
+  return path;
 }
 
 //------------------------------------------------------------------------------
@@ -105,11 +106,7 @@ std::vector<ActorPath> actorPaths(vtkRenderer* renderer)
     prop->InitPathTraversal();
     while (vtkAssemblyPath* source = prop->GetNextPath())
     {
-      ActorPath path;
-      if (readPath(source, path))
-      {
-        paths.push_back(std::move(path));
-      }
+      paths.push_back(readPath(source));
     }
   }
   return paths;

@@ -37,7 +37,7 @@ glm::vec3 upward(const Camera& camera)
 } // anonymous namespace
 
 //------------------------------------------------------------------------------
-Camera extractCamera(vtkRenderer* renderer)
+Camera extractCamera(vtkRenderer* renderer, int width, int height)
 {
   vtkCamera* source = renderer->GetActiveCamera();
   Camera camera;
@@ -45,9 +45,8 @@ Camera extractCamera(vtkRenderer* renderer)
   camera.viewToClip = toMatrix(
     source->GetProjectionTransformMatrix(renderer->GetTiledAspectRatio(), kClipNear, kClipFar));
   camera.parallel = isParallel(camera.viewToClip);
-  int left = 0;
-  int bottom = 0;
-  renderer->GetTiledSizeAndOrigin(&camera.width, &camera.height, &left, &bottom);
+  camera.width = width;
+  camera.height = height;
   return camera;
 }
 

@@ -11,8 +11,9 @@ namespace scene
 {
 
 // From the composed matrices, as vtkOpenGLCamera hands them to the shaders: explicit projections,
-// off-axis and off-centre windows, tiles and stereo need no case of their own.
-Camera extractCamera(vtkRenderer* renderer);
+// off-axis and off-centre windows, tiles and stereo need no case of their own. The picture is width x
+// height pixels large.
+Camera extractCamera(vtkRenderer* renderer, int width, int height);
 
 // Solid or gradient. A textured background is known to rays by its solid colour.
 Background extractBackground(vtkRenderer* renderer, const Camera& camera);

@@ -365,6 +365,7 @@ void writePositions(
       geometry.boundsMin = glm::min(geometry.boundsMin, p);
       geometry.boundsMax = glm::max(geometry.boundsMax, p);
     }
+    geometry.flat = isFlat(geometry.positions);
   }
 }
 

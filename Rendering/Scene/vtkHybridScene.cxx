@@ -153,7 +153,7 @@ public:
   {
   }
 
-  void Update(vtkRenderer* renderer);
+  void Update(vtkRenderer* renderer, int width, int height);
 
   Frame Current;
   hrt::Changes Changes;
@@ -311,13 +311,16 @@ LeftToVTK vtkHybridScene::vtkInternals::AddSurface(
 //------------------------------------------------------------------------------
 void vtkHybridScene::vtkInternals::AddPath(const ActorPath& path, Frame& frame)
 {
-  this->Keys.restore(path);
+  if (path.actor)
+  {
+    this->Keys.restore(path);
+  }
   if (!path.visible)
   {
     this->Geometries.keep(path.key);
     return;
   }
-  LeftToVTK left = classifyMapper(path.actor);
+  LeftToVTK left = path.actor ? classifyMapper(path.actor) : LeftToVTK::NoActor;
   if (left == LeftToVTK::No)
   {
     vtkMapper* mapper = path.actor->GetMapper();
@@ -350,7 +353,7 @@ void vtkHybridScene::vtkInternals::AddLights(vtkRenderer* renderer, hrt::Snapsho
 }
 
 //------------------------------------------------------------------------------
-void vtkHybridScene::vtkInternals::Update(vtkRenderer* renderer)
+void vtkHybridScene::vtkInternals::Update(vtkRenderer* renderer, int width, int height)
 {
   Frame frame;
   hrt::Snapshot& snapshot = *frame.snapshot;
@@ -361,7 +364,7 @@ void vtkHybridScene::vtkInternals::Update(vtkRenderer* renderer)
   }
   keepAssembliesTogether(frame);
   snapshot.triangleCount = frame.numbers.taken();
-  snapshot.camera = extractCamera(renderer);
+  snapshot.camera = extractCamera(renderer, width, height);
   snapshot.background = extractBackground(renderer, snapshot.camera);
   this->AddLights(renderer, snapshot);
   placeOrigin(snapshot);
@@ -388,6 +391,17 @@ vtkHybridScene::~vtkHybridScene() = default;
 //------------------------------------------------------------------------------
 void vtkHybridScene::Update(vtkRenderer* renderer)
 {
+  int width = 0, height = 0, left = 0, bottom = 0;
+  if (renderer)
+  {
+    renderer->GetTiledSizeAndOrigin(&width, &height, &left, &bottom);
+  }
+  this->Update(renderer, width, height);
+}
+
+//------------------------------------------------------------------------------
+void vtkHybridScene::Update(vtkRenderer* renderer, int width, int height)
+{
   if (!renderer)
   {
     vtkErrorMacro("Update needs a renderer.");
@@ -396,7 +410,7 @@ void vtkHybridScene::Update(vtkRenderer* renderer)
   // No exception may cross VTK, which is not written to survive one.
   try
   {
-    this->Internals->Update(renderer);
+    this->Internals->Update(renderer, width, height);
   }
   catch (const std::exception& e)
   {

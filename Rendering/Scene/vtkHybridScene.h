@@ -54,6 +54,12 @@ public:
   void Update(vtkRenderer* renderer);
 
   /**
+   * The same for a picture of another size in pixels than the renderer's viewport: a render pass that
+   * draws into a framebuffer of its own hands that size on. The projection stays the renderer's.
+   */
+  void Update(vtkRenderer* renderer, int width, int height);
+
+  /**
    * The scene as of the last Update; never null, empty before the first.
    */
   std::shared_ptr<const hrt::Snapshot> GetSnapshot() const;

@@ -454,8 +454,9 @@ Facts gatherFacts(const Snapshot& snapshot)
   for (const Light& light : snapshot.lights)
   {
     // From the eye itself no shadow is seen: whatever hides a point from the light hides it from
-    // the camera too.
-    facts.lightCanCast.push_back(!(light.isHeadlight && light.kind == Light::Kind::Positional));
+    // the camera too. The rays of a parallel projection do not start at one eye.
+    facts.lightCanCast.push_back(!(light.isHeadlight && light.kind == Light::Kind::Positional &&
+      !snapshot.camera.parallel));
   }
   return facts;
 }

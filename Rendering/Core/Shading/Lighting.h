@@ -5,7 +5,7 @@
 #include "Rendering/Core/Shading/Shading.h"
 #include "Rendering/Core/Snapshot.h"
 
-#include <glm/gtc/constants.hpp>
+#include <glm/gtc/matrix_inverse.hpp>
 
 namespace hrt
 {
@@ -19,7 +19,9 @@ inline shading::HrtLight shadingLight(
 {
   shading::HrtLight l;
   l.position = glm::vec3(frame * glm::dvec4(light.position, 1.0));
-  l.direction = glm::vec3(glm::normalize(glm::dmat3(frame) * light.direction));
+  // As VTK transforms it: like a normal, which differs only in views that are not rigid.
+  l.direction =
+    glm::vec3(glm::normalize(glm::inverseTranspose(glm::dmat3(frame)) * light.direction));
   l.color = light.color;
   l.attenuation = light.attenuation;
   l.cosCone =

@@ -4,6 +4,8 @@
 // shadow maps and shade. All positions are in view coordinates.
 //HRT::Shading
 
+#define FAR_AWAY 1e30 // farther than any distance, its square within float
+
 uniform usampler2D hitBuffer;
 uniform usamplerBuffer trianglePart; // part number of each triangle
 uniform samplerBuffer positions;     // 3 corners a triangle
@@ -23,6 +25,7 @@ uniform int directRendering;
 uniform int shadowLight;             // >= 0: write this light's visible share instead of a colour
 uniform vec2 viewportSize;
 uniform vec4 noHit;
+uniform int triangleLimit;
 uniform vec3 rayOrigin0, rayOriginX, rayOriginY;
 uniform vec3 rayDirection0, rayDirectionX, rayDirectionY;
 out vec4 fragmentColor;
@@ -47,12 +50,12 @@ HrtLight fetchLight(int index)
 // texel's centre is compared with the depth, on the same line of sight, of the plane of the
 // receiving triangle: a plane never shadows itself, whatever its slope, and the bias only has to
 // cover rounding and the bend between neighbouring facets (see ShadowMaps.h).
-float faceVisibility(int at, vec4 clip, vec4 planeVC, float cosine)
+float faceVisibility(int at, vec4 clip, vec4 planeVC, float cosine, float eyeDistance, float folds)
 {
   mat4 planeToClip = fetchMatrix(shadowFaces, at + 4);
   vec4 depthToDistance = texelFetch(shadowFaces, at + 8);
   vec4 tile = texelFetch(shadowFaces, at + 9);  // origin, size in texels, bend bias
-  vec4 scale = texelFetch(shadowFaces, at + 10);// texel size: x + y * distance; rounding: z + w * d^2
+  vec4 scale = texelFetch(shadowFaces, at + 10);// texel: x + y * d; near plane; rounding: w * d^2
   vec4 plane = planeToClip * planeVC;
 
   vec2 ndc = clip.xy / clip.w;
@@ -74,8 +77,10 @@ float faceVisibility(int at, vec4 clip, vec4 planeVC, float cosine)
         (depthToDistance.z + depthToDistance.w * depth);
       float occluder = (depthToDistance.x + depthToDistance.y * stored) /
         (depthToDistance.z + depthToDistance.w * stored);
-      float bias = tile.w * (scale.x + scale.y * occluder) / cosine2 + scale.z +
-        scale.w * occluder * occluder;
+      // Beyond the horizon of the receiver's plane the line of sight never meets it.
+      receiver = receiver < scale.z && depthToDistance.w != 0.0 ? FAR_AWAY : receiver;
+      float bias = folds * tile.w * (scale.x + scale.y * occluder) / cosine2 +
+        ROUNDING * (eyeDistance + abs(occluder)) + scale.w * occluder * occluder;
       share[k] = occluder < receiver - bias ? 0.0 : 1.0;
     }
   }
@@ -85,8 +90,9 @@ float faceVisibility(int at, vec4 clip, vec4 planeVC, float cosine)
   return low + (high - low) * weight.y;
 }
 
-// Share of a light that reaches point p of a triangle with unit normal ng on the viewer's side.
-float lightVisibility(int index, HrtLight light, vec3 p, vec3 ng)
+// Share of a light that reaches point p of a triangle with unit normal ng on the viewer's side;
+// folds: 0 where the whole part lies in one plane, else 1.
+float lightVisibility(int index, HrtLight light, vec3 p, vec3 ng, float folds)
 {
   vec4 t4 = texelFetch(lightTable, index * LIGHT_TEXELS + 4);
   int faceCount = int(t4.y);
@@ -108,7 +114,7 @@ float lightVisibility(int index, HrtLight light, vec3 p, vec3 ng)
     float limit = clip.w * FACE_SEAM;
     if (clip.w > 0.0 && abs(clip.x) <= limit && abs(clip.y) <= limit)
     {
-      return faceVisibility(at, clip, planeVC, cosine);
+      return faceVisibility(at, clip, planeVC, cosine, length(p), folds);
     }
   }
   return 1.0; // outside of the map no caster stands between
@@ -147,7 +153,7 @@ vec4 shadeHit(uvec4 hit)
   int part = int(texelFetch(trianglePart, triangle).r);
   ivec4 bases = texelFetch(partLayout, part * LAYOUT_TEXELS);    // first triangle, normals, colours, coordinates
   ivec4 more = texelFetch(partLayout, part * LAYOUT_TEXELS + 1); // lookup start, width, height
-  vec4 flags = texelFetch(partTable, part * PART_TEXELS + 13); // scalar colours, lit
+  vec4 flags = texelFetch(partTable, part * PART_TEXELS + 13); // scalar colours, lit, folds
   int corner = (triangle - bases.x) * 3; // within the part
 
   mat4 positionToView = fetchMatrix(partTable, part * PART_TEXELS);
@@ -188,7 +194,7 @@ vec4 shadeHit(uvec4 hit)
 
   if (shadowLight >= 0)
   {
-    return vec4(lightVisibility(shadowLight, fetchLight(shadowLight), p, ng));
+    return vec4(lightVisibility(shadowLight, fetchLight(shadowLight), p, ng, flags.z));
   }
 
   HrtSurface surface = fetchSurface(part, bases, more, flags, corner, uv, front);
@@ -204,7 +210,7 @@ vec4 shadeHit(uvec4 hit)
       vec3 term = hrtShadeLight(surface, light, p, n, toViewer);
       if (term != vec3(0.0))
       {
-        color += term * lightVisibility(i, light, p, ng);
+        color += term * lightVisibility(i, light, p, ng, flags.z);
       }
     }
   }
@@ -217,7 +223,7 @@ void main()
   // discard for blocks of background pixels too.
   uvec4 hit = texelFetch(hitBuffer, ivec2(gl_FragCoord.xy), 0);
   fragmentColor = noHit;
-  if (hit.x != 0u)
+  if (hit.x != 0u && int(hit.x) <= triangleLimit) // a driver's wild id must not be looked up
   {
     fragmentColor = shadeHit(hit);
   }

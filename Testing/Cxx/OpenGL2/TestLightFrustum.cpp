@@ -30,6 +30,12 @@ hrt::Snapshot boxScene(const glm::dvec3& lower, const glm::dvec3& upper)
   return snapshot;
 }
 
+std::vector<hrt::gl::LightFace> fit(const hrt::Snapshot& snapshot, const hrt::Light& light)
+{
+  return hrt::gl::fitLightFaces(snapshot, light, hrt::gl::castersFor(snapshot, light), kResolution,
+    hrt::gl::kNearestRatioReversed);
+}
+
 int facesThatSee(const std::vector<hrt::gl::LightFace>& faces, const glm::dvec3& p)
 {
   int count = 0;
@@ -62,7 +68,7 @@ TEST(LightFrustum, DirectionalSeesEveryCaster)
   {
     hrt::Light light;
     light.direction = glm::normalize(randomPoint(random, glm::dvec3(-1), glm::dvec3(1)));
-    const auto faces = hrt::gl::fitLightFaces(snapshot, light, kResolution);
+    const auto faces = fit(snapshot, light);
     ASSERT_EQ(faces.size(), 1u);
     for (int k = 0; k < 100; ++k)
     {
@@ -82,7 +88,7 @@ TEST(LightFrustum, PointLightSeesEveryCasterOutsideAndAmongThem)
     light.kind = hrt::Light::Kind::Positional;
     light.coneAngle = 180.0f;
     light.position = at;
-    const auto faces = hrt::gl::fitLightFaces(snapshot, light, kResolution);
+    const auto faces = fit(snapshot, light);
     ASSERT_EQ(faces.size(), 6u);
     for (int k = 0; k < 2000; ++k)
     {
@@ -108,7 +114,7 @@ TEST(LightFrustum, SpotSeesItsCone)
   for (const float angle : { 5.0f, 30.0f, 60.0f })
   {
     light.coneAngle = angle;
-    const auto faces = hrt::gl::fitLightFaces(snapshot, light, kResolution);
+    const auto faces = fit(snapshot, light);
     ASSERT_EQ(faces.size(), 1u);
     int inside = 0;
     for (int k = 0; k < 5000; ++k)
@@ -124,7 +130,7 @@ TEST(LightFrustum, SpotSeesItsCone)
     EXPECT_GT(inside, 10);
   }
   light.coneAngle = 75.0f; // wider than one perspective face serves
-  EXPECT_EQ(hrt::gl::fitLightFaces(snapshot, light, kResolution).size(), 6u);
+  EXPECT_EQ(fit(snapshot, light).size(), 6u);
 }
 
 TEST(LightFrustum, TexelSizeIsTrue)
@@ -138,7 +144,7 @@ TEST(LightFrustum, TexelSizeIsTrue)
   spot.position = -5.0 * spot.direction;
   for (const hrt::Light& light : { directional, spot })
   {
-    const hrt::gl::LightFace face = hrt::gl::fitLightFaces(snapshot, light, kResolution).front();
+    const hrt::gl::LightFace face = fit(snapshot, light).front();
     const glm::dmat4 back = glm::inverse(face.worldToClip);
     for (const double depth : { -0.9, 0.0, 0.9 })
     {
@@ -159,7 +165,7 @@ TEST(LightFrustum, NothingToCastMeansNoFace)
 {
   hrt::Snapshot snapshot = boxScene({ 0, 0, 0 }, { 1, 1, 1 });
   snapshot.parts[0].castsShadow = false;
-  EXPECT_TRUE(hrt::gl::fitLightFaces(snapshot, hrt::Light(), kResolution).empty());
+  EXPECT_TRUE(fit(snapshot, hrt::Light()).empty());
 }
 
 // A single flat caster seen edge-on has no width for the light, but a map all the same.
@@ -168,7 +174,50 @@ TEST(LightFrustum, FlatCasterEdgeOn)
   const hrt::Snapshot snapshot = boxScene({ -1, 0, -1 }, { 1, 0, 1 });
   hrt::Light light;
   light.direction = { 1, 0, 0 };
-  const auto faces = hrt::gl::fitLightFaces(snapshot, light, kResolution);
+  const auto faces = fit(snapshot, light);
   ASSERT_EQ(faces.size(), 1u);
   EXPECT_EQ(facesThatSee(faces, { 0.5, 0.0, 0.5 }), 1);
+}
+
+// A floor shadows nothing of what stands on it, and the map need not cover it; a ceiling does.
+TEST(LightFrustum, FlatPartsWithEverythingBeforeThemDoNotCast)
+{
+  hrt::Snapshot snapshot = boxScene({ -1, 0, -1 }, { 1, 2, 1 });
+  hrt::Snapshot flat = boxScene({ -100, 0, -100 }, { 100, 0, 100 });
+  auto floor = std::make_shared<hrt::Geometry>(*flat.parts[0].geometry);
+  floor->positions = { { -100, 0, -100 }, { -100, 0, 100 }, { 100, 0, 0 } };
+  floor->flat = hrt::isFlat(floor->positions);
+  ASSERT_TRUE(floor->flat);
+  hrt::Part part;
+  part.geometry = floor;
+  part.firstTriangle = 1;
+  snapshot.parts.push_back(part);
+
+  hrt::Light light;
+  light.direction = { 0, -1, 0 };
+  EXPECT_EQ(hrt::gl::castersFor(snapshot, light), (std::vector<bool>{ true, false }));
+  EXPECT_LT(fit(snapshot, light)[0].texelConstant, 2.1 / kResolution) << "the object alone";
+  light.direction = { 0, 1, 0 }; // from below the floor is a caster
+  EXPECT_EQ(hrt::gl::castersFor(snapshot, light), (std::vector<bool>{ true, true }));
+  light.kind = hrt::Light::Kind::Positional;
+  light.position = { 5, 3, 5 };
+  EXPECT_EQ(hrt::gl::castersFor(snapshot, light), (std::vector<bool>{ true, false }));
+  light.position.y = -3;
+  EXPECT_EQ(hrt::gl::castersFor(snapshot, light), (std::vector<bool>{ true, true }));
+  light.position.y = 0; // within the plane: no side is lit
+  EXPECT_EQ(hrt::gl::castersFor(snapshot, light), (std::vector<bool>{ true, true }));
+  // What sticks through the floor has to be shadowed by it.
+  light.position.y = 3;
+  snapshot.parts[1].localToWorld[3].y = 0.5;
+  EXPECT_EQ(hrt::gl::castersFor(snapshot, light), (std::vector<bool>{ true, true }));
+}
+
+TEST(Flatness, OnlyOnePlaneIsFlat)
+{
+  const glm::vec3 a(0.1f, 0.2f, 0.3f), b(1.3f, 0.7f, 0.1f), c(0.2f, 1.1f, 0.9f);
+  const glm::vec3 inPlane = a + 0.7f * (b - a) + 0.9f * (c - a);
+  EXPECT_TRUE(hrt::isFlat({}));
+  EXPECT_TRUE(hrt::isFlat({ a, b, c }));
+  EXPECT_TRUE(hrt::isFlat({ a, a, b, a, b, c, b, c, inPlane })) << "but for rounding";
+  EXPECT_FALSE(hrt::isFlat({ a, b, c, b, c, inPlane + glm::vec3(0, 0, 1e-4f) }));
 }
