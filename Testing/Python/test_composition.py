@@ -4,6 +4,7 @@ effects off the picture of a scene of everything equals VTK's own."""
 import numpy as np
 import pytest
 import scenes
+import vtkmodules.vtkRenderingImage  # noqa: F401  (image actors)
 import vtkmodules.vtkRenderingVolumeOpenGL2  # noqa: F401
 from vtkhybrid import statistics, vtkHybridMaterial, vtkHybridRayTracingPass
 from vtkmodules.vtkCommonDataModel import vtkPiecewiseFunction
@@ -12,12 +13,23 @@ from vtkmodules.vtkImagingCore import vtkRTAnalyticSource
 from vtkmodules.vtkImagingSources import vtkImageCanvasSource2D
 from vtkmodules.vtkRenderingCore import (
     vtkColorTransferFunction,
+    vtkImageActor,
+    vtkPropAssembly,
     vtkTextActor,
     vtkTexture,
     vtkVolume,
     vtkVolumeProperty,
 )
-from vtkmodules.vtkRenderingVolume import vtkFixedPointVolumeRayCastMapper
+from vtkmodules.vtkRenderingOpenGL2 import (
+    vtkGaussianBlurPass,
+    vtkRenderStepsPass,
+    vtkSSAAPass,
+    vtkToneMappingPass,
+)
+from vtkmodules.vtkRenderingVolume import (
+    vtkFixedPointVolumeRayCastMapper,
+    vtkGPUVolumeRayCastMapper,
+)
 
 
 def ball(x=0.0, radius=0.5, **properties):
@@ -85,10 +97,10 @@ def text():
     return actor
 
 
-def volume():
+def volume(mapper=None):
     wavelet = vtkRTAnalyticSource()
     wavelet.SetWholeExtent(-5, 5, -5, 5, -5, 5)
-    mapper = vtkFixedPointVolumeRayCastMapper()
+    mapper = mapper or vtkFixedPointVolumeRayCastMapper()
     mapper.SetInputConnection(wavelet.GetOutputPort())
     colors = vtkColorTransferFunction()
     colors.AddRGBPoint(50, 0.9, 0.9, 0.2)
@@ -151,6 +163,81 @@ def test_assembly_with_a_part_that_vtk_draws(render):
     rt, wrong = compare(renderer, render)
     assert wrong < OUTLINE_SHARE
     assert len(statistics(rt)["left_to_vtk"]) == 1
+
+
+def image_actor():
+    canvas = vtkImageCanvasSource2D()
+    canvas.SetScalarTypeToUnsignedChar()
+    canvas.SetNumberOfScalarComponents(3)
+    canvas.SetExtent(0, 63, 0, 63, 0, 0)
+    canvas.SetDrawColor(255, 220, 40)
+    canvas.FillBox(0, 63, 0, 63)
+    actor = vtkImageActor()
+    actor.GetMapper().SetInputConnection(canvas.GetOutputPort())
+    actor.SetScale(0.02)
+    return actor
+
+
+@pytest.mark.parametrize("kind", [scenes.vtkAssembly, vtkPropAssembly])
+def test_assembly_with_a_prop_that_is_no_actor(kind, render):
+    """Nothing of it may vanish because the tracer draws another part of it."""
+    assembly = kind()
+    assembly.AddPart(ball(-0.6))
+    assembly.AddPart(image_actor())
+    renderer = scenes.renderer_of(assembly, ball(0.9, 0.3))
+    scenes.look(renderer, (0.6, 1.2, 4))
+    rt, wrong = compare(renderer, render)
+    assert wrong < OUTLINE_SHARE
+    assert "not an actor" in next(iter(statistics(rt)["left_to_vtk"].values()))
+
+
+def test_image_based_lighting_survives(render):
+    """VTK binds the environment's textures before a pass runs and expects them there afterwards."""
+    canvas = vtkImageCanvasSource2D()
+    canvas.SetScalarTypeToUnsignedChar()
+    canvas.SetNumberOfScalarComponents(3)
+    canvas.SetExtent(0, 63, 0, 31, 0, 0)
+    canvas.SetDrawColor(200, 100, 50)
+    canvas.FillBox(0, 63, 0, 31)
+    texture = vtkTexture()
+    texture.SetInputConnection(canvas.GetOutputPort())
+    texture.MipmapOn()
+    texture.InterpolateOn()
+    renderer = scenes.renderer_of(physically_based(), scenes.actor_of(scenes.plane(2.0, -0.6)))
+    renderer.UseImageBasedLightingOn()
+    renderer.SetEnvironmentTexture(texture)
+    scenes.look(renderer, (0.6, 1.2, 4))
+    render(renderer)  # the maps are computed
+    _, wrong = compare(renderer, render)
+    assert wrong < OUTLINE_SHARE
+
+
+def test_volumes_are_peeled_when_asked(render):
+    renderer = scenes.renderer_of(ball(-0.8, 0.3), translucent(), volume(vtkGPUVolumeRayCastMapper()))
+    renderer.SetUseDepthPeeling(True)
+    renderer.SetUseDepthPeelingForVolumes(True)
+    scenes.look(renderer, (0.6, 1.2, 4))
+    _, wrong = compare(renderer, render)
+    assert wrong < OUTLINE_SHARE
+
+
+@pytest.mark.parametrize("host", [vtkSSAAPass, vtkGaussianBlurPass, vtkToneMappingPass])
+def test_as_delegate_of_another_pass(host, render):
+    """An image processing pass hands on a framebuffer of its own, of another size than the viewport."""
+    pictures = []
+    for delegate in (vtkRenderStepsPass(), vtkHybridRayTracingPass()):
+        renderer = scenes.renderer_of(ball(), lines(), background=(0.1, 0.2, 0.3))
+        renderer.SetViewport(0.3, 0.2, 0.9, 0.8)
+        scenes.look(renderer, (0.6, 1.2, 4))
+        if isinstance(delegate, vtkHybridRayTracingPass):
+            delegate.SetShadowModeToOff()
+        outer = host()
+        outer.SetDelegatePass(delegate)
+        renderer.SetPass(outer)
+        pictures.append(render(renderer).astype(int))
+    differ = np.abs(pictures[0] - pictures[1]).max(axis=2) > 1
+    assert differ.mean() < OUTLINE_SHARE
+    assert (pictures[0] != pictures[0][0, 0]).any()
 
 
 @pytest.mark.parametrize("peeling", [False, True], ids=["blended", "peeled"])

@@ -154,3 +154,56 @@ def test_shadow_darkens_the_picture_by_the_light_it_lost(render):
     dark = on_floor & (shadow == 0.0)
     assert dark.sum() > 200
     assert (np.abs(shown[dark].astype(int) - round(0.25 * 255)) <= 1).all()
+
+
+@pytest.mark.parametrize("kind", LIGHTS)
+@pytest.mark.parametrize("size", [1e2, 1e4])
+def test_large_floor_costs_no_resolution(kind, size, render):
+    """A floor shadows nothing that stands on it, however far it reaches: the map is the object's."""
+    pictures = []
+    for half in (FLOOR, size):
+        ball = scenes.vtkSphereSource()
+        ball.SetThetaResolution(40)
+        ball.SetPhiResolution(40)
+        ball.SetCenter(0, 0.5, 0)
+        floor = scenes.actor_of(scenes.plane(half, 0.0))
+        renderer = scenes.renderer_of(floor, scenes.actor_of(ball))
+        renderer.AddLight(scenes.scene_light(**LIGHTS[kind]))
+        scenes.look(renderer, (1.0, 3.0, 2.0), (0, 0.3, 0))
+        # The same clipping range, so that both floors are seen alike.
+        renderer.GetActiveCamera().SetClippingRange(0.5, 6.0)
+        rt = vtkHybridRayTracingPass()
+        rt.SetShadowMapResolution(RESOLUTION)
+        rt.SetBuffers(["shadow", "prop", "position"])
+        renderer.SetPass(rt)
+        render(renderer)
+        inside = np.abs(buffer(rt, "position")).max(axis=2) < FLOOR - 0.1
+        pictures.append(np.where(inside & (buffer(rt, "prop") == 0), buffer(rt, "shadow"), 1.0))
+    small, large = pictures
+    assert (small == 0).sum() > 500
+    # Positions on a floor of 1e4 are floats in steps of 1e-3: only the border may move.
+    assert np.abs(small - large).sum() < 0.02 * (small == 0).sum()
+
+
+@pytest.mark.parametrize("parallel", [False, True])
+def test_positional_headlight(parallel, render):
+    """At the eye of a perspective its shadows are hidden; a parallel projection sees past them."""
+    ball = scenes.vtkSphereSource()
+    ball.SetRadius(0.3)
+    ball.SetCenter(0.5, 0.9, 0.3)
+    renderer = scenes.renderer_of(scenes.actor_of(scenes.plane(FLOOR)), scenes.actor_of(ball))
+    headlight = scenes.vtkLight()
+    headlight.SetLightTypeToHeadlight()
+    headlight.PositionalOn()
+    headlight.SetConeAngle(80)
+    renderer.AddLight(headlight)
+    camera = scenes.look(renderer, (1.0, 5.0, 4.0)).GetActiveCamera()
+    camera.SetParallelProjection(parallel)
+    camera.SetParallelScale(2.5)
+    renderer.ResetCameraClippingRange()
+    rt = vtkHybridRayTracingPass()
+    rt.SetBuffers(["shadow", "prop"])
+    renderer.SetPass(rt)
+    render(renderer)
+    dark = (buffer(rt, "prop") == 0) & (buffer(rt, "shadow") == 0)
+    assert (dark.sum() > 100) == parallel
