@@ -11,6 +11,7 @@
 #include "vtkShaderProperty.h"
 
 #include <algorithm>
+#include <cstddef>
 #include <iterator>
 
 namespace hrt

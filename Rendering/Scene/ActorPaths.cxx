@@ -14,6 +14,8 @@
 #include "vtkPropCollection.h"
 #include "vtkRenderer.h"
 
+#include <utility>
+
 namespace hrt
 {
 namespace scene

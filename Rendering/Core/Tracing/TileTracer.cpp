@@ -5,6 +5,7 @@
 #include "Rendering/Core/Tracing/Optics.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace hrt
 {

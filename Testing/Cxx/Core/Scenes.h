@@ -8,8 +8,10 @@
 #include <glm/gtc/constants.hpp>
 #include <glm/gtc/matrix_transform.hpp>
 
+#include <cmath>
 #include <memory>
 #include <random>
+#include <utility>
 #include <vector>
 
 namespace hrt

@@ -8,6 +8,7 @@
 #include "vtkProperty.h"
 
 #include <set>
+#include <utility>
 
 namespace
 {
