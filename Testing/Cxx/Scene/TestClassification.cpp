@@ -1,7 +1,6 @@
 // Who draws an actor: the tracer or VTK, with the reason, and what rays and lights see of it.
 #include "SceneTest.h"
 
-#include "vtkCompositePolyDataMapper2.h"
 #include "vtkDataSetMapper.h"
 #include "vtkDoubleArray.h"
 #include "vtkGlyph3DMapper.h"
@@ -16,6 +15,16 @@
 #include "vtkProperty.h"
 #include "vtkShaderProperty.h"
 #include "vtkTexture.h"
+#include "vtkVersion.h"
+
+// The mapper that draws blocks was a class of its own before VTK 9.3, which deprecates it.
+#if VTK_VERSION_NUMBER < VTK_VERSION_CHECK(9, 3, 0)
+#include "vtkCompositePolyDataMapper2.h"
+using BlocksMapper = vtkCompositePolyDataMapper2;
+#else
+#include "vtkCompositePolyDataMapper.h"
+using BlocksMapper = vtkCompositePolyDataMapper;
+#endif
 
 namespace
 {
@@ -222,7 +231,7 @@ TEST_F(Classification, ActorsWithoutMapperDrawThemselves)
 
 TEST_F(Classification, OtherMappersAndOtherData)
 {
-  vtkNew<vtkCompositePolyDataMapper2> composite;
+  vtkNew<BlocksMapper> composite;
   vtkNew<vtkMultiBlockDataSet> blocks;
   blocks->SetBlock(0, this->mesh);
   composite->SetInputDataObject(blocks);
