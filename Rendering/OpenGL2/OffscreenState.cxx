@@ -42,6 +42,13 @@ bool OffscreenState::complete(const char* what) const
 }
 
 //------------------------------------------------------------------------------
+void OffscreenState::useDepthOnly()
+{
+  this->State->vtkglDrawBuffer(GL_NONE);
+  this->State->vtkglReadBuffer(GL_NONE);
+}
+
+//------------------------------------------------------------------------------
 void OffscreenState::beginDepthPass(const DepthConvention& convention)
 {
   this->State->vtkglDisable(GL_BLEND);

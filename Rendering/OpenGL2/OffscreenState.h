@@ -24,6 +24,8 @@ public:
   // Checks the framebuffer after its attachments are set; says which one is not usable and why.
   bool complete(const char* what) const;
 
+  // For a framebuffer that has no colour attachment.
+  void useDepthOnly();
   // Depth test and writes on, blending and culling off.
   void beginDepthPass(const DepthConvention& convention);
   // Every pixel is written once: no depth test, no blending.

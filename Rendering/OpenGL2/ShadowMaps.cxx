@@ -119,8 +119,7 @@ bool ShadowMaps::draw(vtkOpenGLRenderWindow* window, const Snapshot& snapshot,
     window, this->Framebuffer, this->Atlas.width(), this->Atlas.height());
   glFramebufferTexture2D(
     GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_TEXTURE_2D, this->Atlas.name(), 0);
-  glDrawBuffer(GL_NONE);
-  glReadBuffer(GL_NONE);
+  target.useDepthOnly();
   if (!target.complete("shadow maps"))
   {
     return false;
