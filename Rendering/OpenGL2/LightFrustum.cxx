@@ -69,6 +69,8 @@ bool litPlane(const Part& part, const Light& light, glm::dvec3& normal, glm::dve
   const auto world = [&](std::size_t i) {
     return glm::dvec3(toWorld * glm::dvec4(glm::dvec3(p[i]), 1.0));
   };
+  // Without a triangle there is no plane: a zero normal has no lit side.
+  normal = point = glm::dvec3(0.0);
   for (std::size_t i = 0; i + 2 < p.size(); i += 3)
   {
     point = world(i);
