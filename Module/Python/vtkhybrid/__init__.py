@@ -3,8 +3,8 @@
     from vtkhybrid import vtkHybridRayTracingPass
     renderer.SetPass(vtkHybridRayTracingPass())
 
-The package re-exports VTK's wrappers of the two classes a script needs, vtkHybridRayTracingPass and
-vtkHybridMaterial, and adds what a wrapper cannot give: the counters of a frame as a dict
+The package re-exports VTK's wrappers of the classes a script needs, vtkHybridRayTracingPass,
+vtkHybridMaterial and the scene reader vtkHybridBARTImporter, and adds what a wrapper cannot give: the counters of a frame as a dict
 (`statistics`) and the per-pixel buffers as numpy arrays (`buffer`).
 """
 
@@ -24,6 +24,7 @@ for _name in ("vtkmodules.vtkInteractionStyle", "vtkmodules.vtkRenderingFreeType
 del _name
 
 from ._version import __version__
+from .vtkHybridIOBART import vtkHybridBARTImporter
 from .vtkHybridRenderingOpenGL2 import vtkHybridRayTracingPass
 from .vtkHybridRenderingScene import vtkHybridMaterial
 
@@ -32,6 +33,7 @@ __all__ = [
     "buffer",
     "set_buffers",
     "statistics",
+    "vtkHybridBARTImporter",
     "vtkHybridMaterial",
     "vtkHybridRayTracingPass",
 ]
