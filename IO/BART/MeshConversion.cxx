@@ -72,8 +72,9 @@ private:
     }
     if (this->Coordinates)
     {
-      this->Coordinates->InsertNextTuple(
-        &this->Source.coordinates[static_cast<std::size_t>(corner.coordinate)].x);
+      // AFF's v begins at the image's top row, VTK's at the bottom one.
+      const glm::vec2& uv = this->Source.coordinates[static_cast<std::size_t>(corner.coordinate)];
+      this->Coordinates->InsertNextTuple2(uv.x, 1.0 - uv.y);
     }
   }
 

@@ -68,9 +68,9 @@ void setRayKeys(const Material& material, vtkActor* actor)
 {
   const glm::dvec3& s = material.specular;
   const double mirror = std::clamp((s.x + s.y + s.z) / 3.0, 0.0, 1.0);
-  if (material.transmittance > 0.0)
+  if (material.transmittance > 0.0 && material.indexOfRefraction > 1.0)
   {
-    vtkHybridMaterial::SetGlass(actor, std::max(material.indexOfRefraction, 1.0));
+    vtkHybridMaterial::SetGlass(actor, material.indexOfRefraction);
   }
   else if (mirror > 0.0)
   {

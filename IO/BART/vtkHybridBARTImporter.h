@@ -33,13 +33,16 @@
  *     follows Whitted (1980): the mirror image counts by the specular colour. Whitted adds it to the
  *     local colour; vtkHybridRayTracingPass takes its share from the local colour, so that no surface
  *     gives back more light than it gets;
- *   - glass (vtkHybridMaterial), where the transmittance is above 0, with the index of refraction
- *     (at least 1). Glass gets the opacity 1 - transmittance too, for renderers that know no
- *     refraction; the hybrid pass does not ask for it. Its mirror image follows from Fresnel's
- *     equations, hence no reflectance.
+ *   - opacity, 1 - transmittance;
+ *   - glass (vtkHybridMaterial), where the transmittance is above 0 and the index of refraction above
+ *     1. The hybrid pass does not ask for the opacity of glass, other renderers do. Its mirror image
+ *     follows from Fresnel's equations, hence no reflectance. With an index of 1 or less (BART's robots
+ *     have panes with 0) light goes straight on, which is plain transparency.
  *
  * **Textures** are PPM files beside the scene, or in its folder TextureFiles; they multiply the shaded
- * colour and repeat, as in BART.
+ * colour and repeat, as in BART. AFF counts texture coordinates from the image's top row, VTK from the
+ * bottom one, hence (u, v) becomes (u, 1 - v). Textures are interpolated but have no mipmaps; all
+ * actors with the same image share one vtkTexture, on which MipmapOn() can be called.
  *
  * **Lights** are scene lights that shine in all directions, without attenuation.
  *
