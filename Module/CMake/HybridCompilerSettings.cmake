@@ -37,6 +37,12 @@ if (HRT_SANITIZE)
   add_link_options(-fsanitize=${HRT_SANITIZE})
 endif ()
 
+option(HRT_FUZZ "Build the fuzzing targets (needs clang); see Documentation/fuzzing.md" OFF)
+if (HRT_FUZZ)
+  # The libraries tell the fuzzer which branches an input took.
+  add_compile_options(-fsanitize=fuzzer-no-link)
+endif ()
+
 # Adds the project's warnings to one of its targets (a module may be given by either of its names).
 # Generated wrapper code is not ours and is left out.
 function (hrt_target_warnings target)
