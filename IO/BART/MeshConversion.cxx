@@ -65,10 +65,12 @@ public:
 private:
   void add(const Corner& corner)
   {
-    this->Points->InsertNextPoint(&this->Source.vertices[static_cast<std::size_t>(corner.vertex)].x);
+    this->Points->InsertNextPoint(
+      &this->Source.vertices[static_cast<std::size_t>(corner.vertex)].x);
     if (this->Normals)
     {
-      this->Normals->InsertNextTuple(&this->Source.normals[static_cast<std::size_t>(corner.normal)].x);
+      this->Normals->InsertNextTuple(
+        &this->Source.normals[static_cast<std::size_t>(corner.normal)].x);
     }
     if (this->Coordinates)
     {

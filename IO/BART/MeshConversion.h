@@ -12,8 +12,8 @@ namespace hrt
 namespace bart
 {
 
-// AFF gives a corner its vertex, normal and texture coordinate by three indices, VTK by one: a point is
-// made for each combination that occurs.
+// AFF gives a corner its vertex, normal and texture coordinate by three indices, VTK by one: a
+// point is made for each combination that occurs.
 vtkSmartPointer<vtkPolyData> toPolyData(const Mesh& mesh);
 
 // Three points a triangle, not yet at any time: see moveTo.

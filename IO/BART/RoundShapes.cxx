@@ -26,7 +26,8 @@ namespace
 constexpr int kSectors = 64;
 constexpr int kSphereRings = 33; // its poles included
 
-// A ring: its distance along the axis, its radius, and its normals' parts away from and along the axis.
+// A ring: its distance along the axis, its radius, and its normals' parts away from and along the
+// axis.
 struct Ring
 {
   double height, radius, outward, along;
@@ -90,8 +91,8 @@ private:
         std::cos(angle) * this->Place.across + std::sin(angle) * this->Place.third;
       const glm::dvec3 point =
         this->Place.origin + ring.height * this->Place.axis + ring.radius * radial;
-      const glm::dvec3 normal = (this->Inside ? -1.0 : 1.0) *
-        (ring.outward * radial + ring.along * this->Place.axis);
+      const glm::dvec3 normal =
+        (this->Inside ? -1.0 : 1.0) * (ring.outward * radial + ring.along * this->Place.axis);
       this->Points->InsertNextPoint(&point.x);
       this->Normals->InsertNextTuple(&normal.x);
     }
@@ -119,8 +120,7 @@ private:
   vtkIdType pointAt(std::size_t back, int i) const
   {
     const std::size_t ring = this->First.size() - 1 - back;
-    const vtkIdType end =
-      back == 0 ? this->Points->GetNumberOfPoints() : this->First[ring + 1];
+    const vtkIdType end = back == 0 ? this->Points->GetNumberOfPoints() : this->First[ring + 1];
     return this->First[ring] + i % (end - this->First[ring]);
   }
 

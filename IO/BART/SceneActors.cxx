@@ -1,5 +1,5 @@
-// Implements the making and moving of a scene's objects. What does not change is not touched: a renderer
-// that watches modification times does no work for what stands still.
+// Implements the making and moving of a scene's objects. What does not change is not touched: a
+// renderer that watches modification times does no work for what stands still.
 #include "IO/BART/SceneActors.h"
 
 #include "IO/BART/AFF/Error.h"
@@ -42,8 +42,8 @@ namespace
 
 // A vtkLight shines in all directions when its cone reaches 90 degrees.
 constexpr double kAllDirections = 90.0;
-// What is farther away than this many times the hither distance would be lost to a depth buffer of 24
-// bits; what is nearer than the other fraction of the scene may go instead.
+// What is farther away than this many times the hither distance would be lost to a depth buffer of
+// 24 bits; what is nearer than the other fraction of the scene may go instead.
 constexpr double kDeepest = 1e6;
 
 //------------------------------------------------------------------------------
@@ -79,16 +79,15 @@ void setRayKeys(const Material& material, vtkActor* actor)
 }
 
 //------------------------------------------------------------------------------
-// VTK's readers report to observers and go on. Their text names a line of their own source, which helps
-// no one who has a bad image: only that there was an error is kept.
+// VTK's readers report to observers and go on. Their text names a line of their own source, which
+// helps no one who has a bad image: only that there was an error is kept.
 class ErrorEar
 {
 public:
   explicit ErrorEar(vtkObject* source)
   {
     this->Command->SetClientData(this);
-    this->Command->SetCallback(
-      [](vtkObject*, unsigned long, void* self, void*)
+    this->Command->SetCallback([](vtkObject*, unsigned long, void* self, void*)
       { static_cast<ErrorEar*>(self)->Happened = true; });
     source->AddObserver(vtkCommand::ErrorEvent, this->Command);
   }

@@ -53,7 +53,7 @@ private:
   vtkSmartPointer<vtkCamera> Camera;
   vtkIdType Triangles = 0;
 
-  std::vector<vtkSmartPointer<vtkMatrix4x4>> Matrices; // of each node
+  std::vector<vtkSmartPointer<vtkMatrix4x4>> Matrices;  // of each node
   std::vector<vtkSmartPointer<vtkProperty>> Properties; // of each material
   std::vector<vtkSmartPointer<vtkTexture>> Textures;    // of each texture, where they are shown
   Surfaces Meshes, AnimatedTriangles, Spheres, Cones;   // each made when first used

@@ -1,5 +1,5 @@
-// The public face of the reader: switches, figures, and errors in VTK's way. What makes and moves the
-// actors stands in SceneActors.cxx.
+// The public face of the reader: switches, figures, and errors in VTK's way. What makes and moves
+// the actors stands in SceneActors.cxx.
 
 #include "vtkHybridBARTImporter.h"
 

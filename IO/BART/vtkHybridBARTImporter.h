@@ -3,8 +3,8 @@
  * @brief   the animated scenes of BART as actors, lights and a camera
  *
  * BART is the benchmark for animated ray tracing of J. Lext, U. Assarsson and T. Moeller (2000): a
- * kitchen, a museum and a parade of robots, in a text format (AFF) that extends NFF. This class reads
- * any AFF or NFF scene:
+ * kitchen, a museum and a parade of robots, in a text format (AFF) that extends NFF. This class
+ * reads any AFF or NFF scene:
  *
  * @code{.py}
  * importer = vtkHybridBARTImporter()
@@ -16,33 +16,34 @@
  *         window.Render()
  * @endcode
  *
- * It is not a vtkImporter because a vtkImporter always makes a renderer, and a window if it has none,
- * and its Read() cannot say that it failed. Here nothing is made but what the file describes, and
- * either all of it or nothing: an error names the file, the line and what was expected there.
+ * It is not a vtkImporter because a vtkImporter always makes a renderer, and a window if it has
+ * none, and its Read() cannot say that it failed. Here nothing is made but what the file describes,
+ * and either all of it or nothing: an error names the file, the line and what was expected there.
  *
- * **Actors.** Each mesh, sphere, cone or run of loose faces in the scene's hierarchy is one vtkActor.
- * Its user matrix is the composed transform of all that is around it; the actors of one transform
- * share that matrix, the actors of one material one vtkProperty, the instances of one mesh one
- * vtkPolyData. SetTime changes matrices, visibilities, lights and the camera, never geometry; the one
- * exception are AFF's animated triangles ("tpa"), whose corners are what moves.
+ * **Actors.** Each mesh, sphere, cone or run of loose faces in the scene's hierarchy is one
+ * vtkActor. Its user matrix is the composed transform of all that is around it; the actors of one
+ * transform share that matrix, the actors of one material one vtkProperty, the instances of one
+ * mesh one vtkPolyData. SetTime changes matrices, visibilities, lights and the camera, never
+ * geometry; the one exception are AFF's animated triangles ("tpa"), whose corners are what moves.
  *
  * **Materials.** AFF's twelve numbers become:
- *   - ambient colour (multiplied by the scene's ambient light), diffuse colour, specular colour, and
- *     specular power, with coefficients of 1, so that local shading is BART's own sum;
+ *   - ambient colour (multiplied by the scene's ambient light), diffuse colour, specular colour,
+ * and specular power, with coefficients of 1, so that local shading is BART's own sum;
  *   - reflectance (vtkHybridMaterial), the mean of the specular colour's channels, at most 1. BART
- *     follows Whitted (1980): the mirror image counts by the specular colour. Whitted adds it to the
- *     local colour; vtkHybridRayTracingPass takes its share from the local colour, so that no surface
- *     gives back more light than it gets;
+ *     follows Whitted (1980): the mirror image counts by the specular colour. Whitted adds it to
+ * the local colour; vtkHybridRayTracingPass takes its share from the local colour, so that no
+ * surface gives back more light than it gets;
  *   - opacity, 1 - transmittance;
- *   - glass (vtkHybridMaterial), where the transmittance is above 0 and the index of refraction above
- *     1. The hybrid pass does not ask for the opacity of glass, other renderers do. Its mirror image
- *     follows from Fresnel's equations, hence no reflectance. With an index of 1 or less (BART's robots
- *     have panes with 0) light goes straight on, which is plain transparency.
+ *   - glass (vtkHybridMaterial), where the transmittance is above 0 and the index of refraction
+ * above
+ *     1. The hybrid pass does not ask for the opacity of glass, other renderers do. Its mirror
+ * image follows from Fresnel's equations, hence no reflectance. With an index of 1 or less (BART's
+ * robots have panes with 0) light goes straight on, which is plain transparency.
  *
- * **Textures** are PPM files beside the scene, or in its folder TextureFiles; they multiply the shaded
- * colour and repeat, as in BART. AFF counts texture coordinates from the image's top row, VTK from the
- * bottom one, hence (u, v) becomes (u, 1 - v). Textures are interpolated but have no mipmaps; all
- * actors with the same image share one vtkTexture, on which MipmapOn() can be called.
+ * **Textures** are PPM files beside the scene, or in its folder TextureFiles; they multiply the
+ * shaded colour and repeat, as in BART. AFF counts texture coordinates from the image's top row,
+ * VTK from the bottom one, hence (u, v) becomes (u, 1 - v). Textures are interpolated but have no
+ * mipmaps; all actors with the same image share one vtkTexture, on which MipmapOn() can be called.
  *
  * **Lights** are scene lights that shine in all directions, without attenuation.
  *
@@ -86,8 +87,8 @@ public:
 
   ///@{
   /**
-   * Set/Get whether surfaces get their textures. Off, texture files need not exist and surfaces keep
-   * their material's colours. Takes effect at the next Read(). Default: on.
+   * Set/Get whether surfaces get their textures. Off, texture files need not exist and surfaces
+   * keep their material's colours. Takes effect at the next Read(). Default: on.
    */
   vtkSetMacro(Textures, bool);
   vtkGetMacro(Textures, bool);
@@ -120,9 +121,9 @@ public:
 
   ///@{
   /**
-   * Set/Get the moment that is shown, in the scene's own unit of time (BART means seconds). Any finite
-   * time will do: before its first and after its last key a movement stands still. Another value is
-   * refused with an error. Default: the time of the first frame.
+   * Set/Get the moment that is shown, in the scene's own unit of time (BART means seconds). Any
+   * finite time will do: before its first and after its last key a movement stands still. Another
+   * value is refused with an error. Default: the time of the first frame.
    */
   void SetTime(double time);
   vtkGetMacro(Time, double);
@@ -141,15 +142,15 @@ public:
   vtkGetMacro(NumberOfFrames, int);
 
   /**
-   * The time of a frame; frames are spread evenly over the time range, both ends included. The frame
-   * is clamped to [0, GetNumberOfFrames() - 1].
+   * The time of a frame; frames are spread evenly over the time range, both ends included. The
+   * frame is clamped to [0, GetNumberOfFrames() - 1].
    */
   double GetFrameTime(int frame);
 
   ///@{
   /**
-   * The triangles of all actors, a polygon of n corners counted as n - 2, and those of them that the
-   * file gives a texture.
+   * The triangles of all actors, a polygon of n corners counted as n - 2, and those of them that
+   * the file gives a texture.
    */
   vtkGetMacro(NumberOfTriangles, vtkIdType);
   vtkGetMacro(NumberOfTexturedTriangles, vtkIdType);
@@ -157,8 +158,8 @@ public:
 
   ///@{
   /**
-   * The transforms that may move, and those of them for which there are keys; the others stay as they
-   * are.
+   * The transforms that may move, and those of them for which there are keys; the others stay as
+   * they are.
    */
   vtkGetMacro(NumberOfAnimatedTransforms, int);
   vtkGetMacro(NumberOfKeyedTransforms, int);

@@ -1,6 +1,6 @@
-// One input of fuzzing as a scene: up to the first zero byte it is the main file, after it a file that
-// the main one may include. Used by the libFuzzer target and by the mutations of ctest, so that both
-// test the same thing.
+// One input of fuzzing as a scene: up to the first zero byte it is the main file, after it a file
+// that the main one may include. Used by the libFuzzer target and by the mutations of ctest, so
+// that both test the same thing.
 #pragma once
 
 #include "IO/BART/AFF/Error.h"
@@ -27,7 +27,8 @@ inline Limits fuzzLimits()
   return limits;
 }
 
-// True for a scene, false for a text that is refused as it should be. Anything else ends the program.
+// True for a scene, false for a text that is refused as it should be. Anything else ends the
+// program.
 inline bool readFuzzed(std::string_view input)
 {
   MemoryFiles files;

@@ -10,7 +10,8 @@ namespace bart
 namespace
 {
 
-// The angle of a view must leave a picture plane; the picture must fit an int of bytes many times over.
+// The angle of a view must leave a picture plane; the picture must fit an int of bytes many times
+// over.
 constexpr double kNarrowestView = 1e-3;
 constexpr double kWidestView = 179.0;
 constexpr int kLargestPicture = 65536;

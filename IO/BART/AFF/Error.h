@@ -1,5 +1,5 @@
-// What is wrong with an AFF scene, and where. Thrown inside the parser only: whoever calls it from VTK
-// catches it and reports it in VTK's way.
+// What is wrong with an AFF scene, and where. Thrown inside the parser only: whoever calls it from
+// VTK catches it and reports it in VTK's way.
 #pragma once
 
 #include "IO/BART/AFF/Scene.h"

@@ -1,5 +1,5 @@
-// Implements the sources of text. Only ordinary files are opened: a scene that names a device or a pipe
-// would otherwise never end.
+// Implements the sources of text. Only ordinary files are opened: a scene that names a device or a
+// pipe would otherwise never end.
 #include "IO/BART/AFF/Files.h"
 
 #include <filesystem>

@@ -34,7 +34,8 @@ public:
   std::string_view next();
   std::string_view peek();
 
-  // Where the next word begins, and a jump to such a place: what is known already is not read again.
+  // Where the next word begins, and a jump to such a place: what is known already is not read
+  // again.
   struct Position
   {
     std::size_t offset = 0;

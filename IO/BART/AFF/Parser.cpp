@@ -1,5 +1,5 @@
-// Implements the reading of a scene: which file is read, which braces are open, and what each command
-// does to the scene. Open files stand on a list of our own, not on the call stack.
+// Implements the reading of a scene: which file is read, which braces are open, and what each
+// command does to the scene. Open files stand on a list of our own, not on the call stack.
 #include "IO/BART/AFF/Parser.h"
 
 #include "IO/BART/AFF/Commands.h"
@@ -65,7 +65,8 @@ private:
   //----------------------------------------------------------------------------
   // Files
 
-  // Puts a file on top of those that are read. from: of the include, without one for the first file.
+  // Puts a file on top of those that are read. from: of the include, without one for the first
+  // file.
   void open(const std::string& path, const std::optional<Location>& from)
   {
     const Location where = from.value_or(Location{ path, 0 });
@@ -87,8 +88,8 @@ private:
     {
       throw ReadError(where, "the scene includes too many files, or too deeply");
     }
-    this->Open.push_back(std::make_unique<OpenFile>(
-      OpenFile{ text, Lexer(path, *text), this->Braces.size() }));
+    this->Open.push_back(
+      std::make_unique<OpenFile>(OpenFile{ text, Lexer(path, *text), this->Braces.size() }));
   }
 
   // Null, with a reason, for a file that cannot be had.
@@ -149,7 +150,8 @@ private:
     const auto command = commands.find(word);
     if (command == commands.end())
     {
-      this->lexer().failExpecting("a command (a am b c d f fm i k l la m p pp s tpa tt ttp v x xs)");
+      this->lexer().failExpecting(
+        "a command (a am b c d f fm i k l la m p pp s tpa tt ttp v x xs)");
     }
     (this->*command->second)();
   }

@@ -28,8 +28,7 @@ KeyShape readShape(Lexer& lexer)
 //------------------------------------------------------------------------------
 std::vector<VectorKey> readVectorKeys(Lexer& lexer)
 {
-  std::vector<VectorKey> keys(
-    lexer.count(kFewestKeys, kVectorKeyWords, "the number of keys"));
+  std::vector<VectorKey> keys(lexer.count(kFewestKeys, kVectorKeyWords, "the number of keys"));
   for (VectorKey& key : keys)
   {
     key.time = lexer.number("the time of a key");
@@ -42,8 +41,7 @@ std::vector<VectorKey> readVectorKeys(Lexer& lexer)
 //------------------------------------------------------------------------------
 std::vector<RotationKey> readRotationKeys(Lexer& lexer)
 {
-  std::vector<RotationKey> keys(
-    lexer.count(kFewestKeys, kRotationKeyWords, "the number of keys"));
+  std::vector<RotationKey> keys(lexer.count(kFewestKeys, kRotationKeyWords, "the number of keys"));
   for (RotationKey& key : keys)
   {
     key.time = lexer.number("the time of a key");

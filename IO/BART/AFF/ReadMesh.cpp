@@ -1,5 +1,5 @@
-// Implements AFF's meshes and loose faces. All of them become a Mesh, so that only this file knows the
-// ways in which AFF writes a triangle.
+// Implements AFF's meshes and loose faces. All of them become a Mesh, so that only this file knows
+// the ways in which AFF writes a triangle.
 #include "IO/BART/AFF/Commands.h"
 
 namespace hrt
@@ -34,8 +34,8 @@ void readCoordinates(Lexer& lexer, NamedMesh& named)
 
 //------------------------------------------------------------------------------
 // The three indices of one triangle into one of the mesh's lists.
-void readIndices(Lexer& lexer, std::size_t size, int Corner::*member, Corner* corners,
-  const char* expected)
+void readIndices(
+  Lexer& lexer, std::size_t size, int Corner::*member, Corner* corners, const char* expected)
 {
   for (int i = 0; i < 3; ++i)
   {
@@ -46,8 +46,7 @@ void readIndices(Lexer& lexer, std::size_t size, int Corner::*member, Corner* co
 //------------------------------------------------------------------------------
 void readTriangles(Lexer& lexer, Mesh& mesh)
 {
-  const std::size_t lists =
-    1 + (mesh.normals.empty() ? 0 : 1) + (mesh.coordinates.empty() ? 0 : 1);
+  const std::size_t lists = 1 + (mesh.normals.empty() ? 0 : 1) + (mesh.coordinates.empty() ? 0 : 1);
   mesh.corners.resize(3 * lexer.count(1, 3 * lists, "the number of triangles"));
   for (std::size_t first = 0; first < mesh.corners.size(); first += 3)
   {

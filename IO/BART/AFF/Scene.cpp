@@ -85,7 +85,8 @@ Pose poseAt(const Scene& scene, double time)
   return pose;
 }
 
-glm::dvec3 lightPositionAt(const Scene& scene, const Pose& pose, const PointLight& light, double time)
+glm::dvec3 lightPositionAt(
+  const Scene& scene, const Pose& pose, const PointLight& light, double time)
 {
   glm::dvec3 position = light.position;
   if (light.animation != kNone)
@@ -125,8 +126,8 @@ Viewpoint viewpointAt(const Scene& scene, double time)
 AnimatedTriangle::Corners cornersAt(const AnimatedTriangle& triangle, double time)
 {
   const std::vector<double>& times = triangle.times;
-  const std::size_t next = static_cast<std::size_t>(
-    std::upper_bound(times.begin(), times.end(), time) - times.begin());
+  const std::size_t next =
+    static_cast<std::size_t>(std::upper_bound(times.begin(), times.end(), time) - times.begin());
   if (next == 0 || next == times.size())
   {
     return next == 0 ? triangle.corners.front() : triangle.corners.back();

@@ -1,5 +1,5 @@
-// What an AFF scene says, as plain data: the parser fills it, the importer turns it into VTK's objects.
-// It stands between the two so that the parser can be tested and fuzzed without VTK.
+// What an AFF scene says, as plain data: the parser fills it, the importer turns it into VTK's
+// objects. It stands between the two so that the parser can be tested and fuzzed without VTK.
 //
 // The transforms are a flat list in which a parent stands before its children, so that a deep
 // hierarchy is evaluated by a loop, never by recursion. Geometry is stored once however often its
@@ -56,8 +56,8 @@ struct Material
   double indexOfRefraction = 1.0;
 };
 
-// "l" and "la". A light inside a transform moves with it; the translation keys of a named one are its
-// position.
+// "l" and "la". A light inside a transform moves with it; the translation keys of a named one are
+// its position.
 struct PointLight
 {
   glm::dvec3 position{ 0.0 };
@@ -82,9 +82,9 @@ struct Node
 {
   int parent = kNone;
   bool animated = false;
-  int animation = kNone;      // of an animated one
-  glm::dmat4 matrix{ 1.0 };   // of a static one
-  std::string name;           // of an animated one
+  int animation = kNone;    // of an animated one
+  glm::dmat4 matrix{ 1.0 }; // of a static one
+  std::string name;         // of an animated one
 };
 
 struct Texture
@@ -102,7 +102,8 @@ struct Corner
   int coordinate = kNone;
 };
 
-// "m", or loose faces ("p", "pp", "tt", "ttp") that follow each other under one transform and material.
+// "m", or loose faces ("p", "pp", "tt", "ttp") that follow each other under one transform and
+// material.
 struct Mesh
 {
   std::vector<glm::vec3> vertices;
@@ -184,8 +185,8 @@ struct Scene
 // Triangles of a mesh; a polygon of n corners counts as n - 2.
 std::size_t countTriangles(const Mesh& mesh);
 
-// Triangles of all instances of meshes and animated triangles, in all and of the textured ones. Spheres
-// and cones are not made of triangles here.
+// Triangles of all instances of meshes and animated triangles, in all and of the textured ones.
+// Spheres and cones are not made of triangles here.
 struct TriangleCount
 {
   std::size_t all = 0;
@@ -201,16 +202,18 @@ struct Pose
 };
 Pose poseAt(const Scene& scene, double time);
 
-// The translation, rotation and scale of an animation, M = T R S; what has no keys leaves all in place.
+// The translation, rotation and scale of an animation, M = T R S; what has no keys leaves all in
+// place.
 glm::dmat4 matrixAt(const Animation& animation, double time);
 // M = T R S of "xs".
 glm::dmat4 composeMatrix(
   const glm::dvec3& translation, const glm::dquat& rotation, const glm::dvec3& scale);
 
 // In world coordinates.
-glm::dvec3 lightPositionAt(const Scene& scene, const Pose& pose, const PointLight& light, double time);
-// The viewpoint, moved by the keys named "camera": translation keys are its place; rotation keys turn a
-// camera that looks along -z with +y up.
+glm::dvec3 lightPositionAt(
+  const Scene& scene, const Pose& pose, const PointLight& light, double time);
+// The viewpoint, moved by the keys named "camera": translation keys are its place; rotation keys
+// turn a camera that looks along -z with +y up.
 Viewpoint viewpointAt(const Scene& scene, double time);
 // Linear between the triangle's times, constant outside.
 AnimatedTriangle::Corners cornersAt(const AnimatedTriangle& triangle, double time);

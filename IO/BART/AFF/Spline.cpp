@@ -1,5 +1,5 @@
-// Implements the key curves. All tangents are computed once, so that evaluating is a bisection and a
-// cubic.
+// Implements the key curves. All tangents are computed once, so that evaluating is a bisection and
+// a cubic.
 #include "IO/BART/AFF/Spline.h"
 
 #include <glm/geometric.hpp>
@@ -37,8 +37,8 @@ glm::dquat exponential(const glm::dvec3& v)
 }
 
 //------------------------------------------------------------------------------
-// From a (u = 0) to b (u = 1), along the way that their signs say: squad needs it without the turn to
-// the shorter way that glm::slerp makes.
+// From a (u = 0) to b (u = 1), along the way that their signs say: squad needs it without the turn
+// to the shorter way that glm::slerp makes.
 glm::dquat turn(const glm::dquat& a, const glm::dquat& b, double u)
 {
   return a * exponential(u * logarithm(glm::conjugate(a) * b));
@@ -52,8 +52,8 @@ double span(double from, double to)
 }
 
 //------------------------------------------------------------------------------
-// The factor of the tangent that belongs to the segment of length own, when the one on the other side
-// of the key has the length other.
+// The factor of the tangent that belongs to the segment of length own, when the one on the other
+// side of the key has the length other.
 double speedFactor(double own, double other)
 {
   return own + other > 0.0 ? 2.0 * own / (own + other) : 1.0;
@@ -95,7 +95,8 @@ struct Tangents
   glm::dvec3 start, end;
 };
 
-// The tangents of the segment from key i to key i + 1; differences[i] leads from key i to key i + 1.
+// The tangents of the segment from key i to key i + 1; differences[i] leads from key i to key i
+// + 1.
 template <typename Key>
 Tangents tangentsOf(
   const std::vector<Key>& keys, const std::vector<glm::dvec3>& differences, std::size_t i)
@@ -185,9 +186,9 @@ RotationSpline::RotationSpline(const std::vector<RotationKey>& keys)
     // Squad's derivatives at its ends are the tangents when the controls stand half of what they
     // differ from the straight way beside the ends.
     const Tangents tangents = tangentsOf(keys, differences, i);
-    this->Segments.push_back({ turns[i],
-      turns[i] * exponential(0.5 * (tangents.start - differences[i])),
-      turns[i + 1] * exponential(0.5 * (differences[i] - tangents.end)), turns[i + 1] });
+    this->Segments.push_back(
+      { turns[i], turns[i] * exponential(0.5 * (tangents.start - differences[i])),
+        turns[i + 1] * exponential(0.5 * (differences[i] - tangents.end)), turns[i + 1] });
   }
 }
 
@@ -197,8 +198,8 @@ glm::dquat RotationSpline::at(double time) const
   const Timeline::Place place = this->Line.find(time);
   const Segment& s = this->Segments[place.segment];
   const double u = place.u;
-  return glm::normalize(turn(turn(s.start, s.end, u), turn(s.startControl, s.endControl, u),
-    2.0 * u * (1.0 - u)));
+  return glm::normalize(
+    turn(turn(s.start, s.end, u), turn(s.startControl, s.endControl, u), 2.0 * u * (1.0 - u)));
 }
 
 //------------------------------------------------------------------------------

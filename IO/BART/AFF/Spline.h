@@ -1,20 +1,21 @@
 // The curves between an AFF scene's keys: Kochanek-Bartels splines for translations, scales and
 // rotations, steps for visibility.
 //
-// D. Kochanek, R. Bartels: "Interpolating Splines with Local Tension, Continuity, and Bias Control",
-// SIGGRAPH 1984. Key i with value P_i, time t_i, tension T, continuity C, bias B has the tangents
+// D. Kochanek, R. Bartels: "Interpolating Splines with Local Tension, Continuity, and Bias
+// Control", SIGGRAPH 1984. Key i with value P_i, time t_i, tension T, continuity C, bias B has the
+// tangents
 //
 //   incoming  a_i ((1-T)(1-C)(1+B)/2 (P_i - P_{i-1}) + (1-T)(1+C)(1-B)/2 (P_{i+1} - P_i))
 //   outgoing  b_i ((1-T)(1+C)(1+B)/2 (P_i - P_{i-1}) + (1-T)(1-C)(1-B)/2 (P_{i+1} - P_i))
 //
-// and each segment is the cubic with the values and tangents of its two ends (Hermite). With segments
-// of unequal length, d_i = t_{i+1} - t_i, the factors a_i = 2 d_{i-1} / (d_{i-1} + d_i) and
-// b_i = 2 d_i / (d_{i-1} + d_i) keep the speed in time the same on both sides of a key.
+// and each segment is the cubic with the values and tangents of its two ends (Hermite). With
+// segments of unequal length, d_i = t_{i+1} - t_i, the factors a_i = 2 d_{i-1} / (d_{i-1} + d_i)
+// and b_i = 2 d_i / (d_{i-1} + d_i) keep the speed in time the same on both sides of a key.
 //
 // Rotations follow the same formula with unit quaternions: the difference Q_{i+1} - Q_i becomes
 // log(Q_i^-1 Q_{i+1}), the cubic becomes Shoemake's squad (D. Eberly: "Key Frame Interpolation via
-// Splines and Quaternions"). Neighbouring quaternions are taken on the same half of the sphere, so that
-// a segment turns by 180 degrees at most, whatever whole turns the angles of its keys hold.
+// Splines and Quaternions"). Neighbouring quaternions are taken on the same half of the sphere, so
+// that a segment turns by 180 degrees at most, whatever whole turns the angles of its keys hold.
 //
 // The first and the last key give tangents only: the curve runs from the second key to the last but
 // one and stays there outside.

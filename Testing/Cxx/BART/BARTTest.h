@@ -39,7 +39,8 @@ inline std::string refusal(const std::string& text)
   return refusal(files);
 }
 
-inline void expectNear(const glm::dvec3& actual, const glm::dvec3& expected, double tolerance = 1e-12)
+inline void expectNear(
+  const glm::dvec3& actual, const glm::dvec3& expected, double tolerance = 1e-12)
 {
   EXPECT_LE(glm::length(actual - expected), tolerance)
     << "(" << actual.x << ", " << actual.y << ", " << actual.z << ") for (" << expected.x << ", "

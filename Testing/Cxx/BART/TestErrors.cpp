@@ -30,7 +30,8 @@ TEST(Errors, NameFileLineAndWhatWasExpected)
     { "s 0 0 0", 1, "expected the sphere's radius (a number), found the end of the file" },
     { "s 0 0 zero 1", 1, "expected the sphere's centre (a number), found 'zero'" },
     { "s 0 0\n0\n1x", 3, "found '1x'" },
-    { "s 0 0 0 nan", 1, "expected the sphere's radius (a number from -1e+18 to 1e+18), found 'nan'" },
+    { "s 0 0 0 nan", 1,
+      "expected the sphere's radius (a number from -1e+18 to 1e+18), found 'nan'" },
     { "s 0 0 0 inf", 1, "found 'inf'" },
     { "s 0 0 0 1e400", 1, "found '1e400'" },
     { "s 0 0 0 2e18", 1, "a number from -1e+18 to 1e+18" },
@@ -119,7 +120,8 @@ TEST(Errors, AViewMustBeWholeAndPossible)
   {
     EXPECT_NE(refusal(replaced(kView, "angle 30", angle)).find("main.aff:5"), std::string::npos);
   }
-  EXPECT_NE(refusal(replaced(kView, "hither 1", "hither -1")).find("main.aff:6"), std::string::npos);
+  EXPECT_NE(
+    refusal(replaced(kView, "hither 1", "hither -1")).find("main.aff:6"), std::string::npos);
   EXPECT_NE(refusal(replaced(kView, "9 9", "9 0")).find("the picture's height"), std::string::npos);
   EXPECT_NE(refusal(replaced(kView, "up 0 1 0", "up 0 0 5")).find("main.aff:4"), std::string::npos);
 }
@@ -133,7 +135,8 @@ TEST(Errors, NameTheIncludedFile)
   files.files["part.aff"] = "x b {\n";
   EXPECT_EQ(refusal(files).rfind("part.aff:1: this '{' is not closed", 0), 0u) << refusal(files);
   files.files["part.aff"] = "s 0 0 0 1 i 0 main.aff";
-  EXPECT_EQ(refusal(files).rfind("part.aff:1: the included file 'main.aff' includes itself", 0), 0u);
+  EXPECT_EQ(
+    refusal(files).rfind("part.aff:1: the included file 'main.aff' includes itself", 0), 0u);
 }
 
 TEST(Errors, AFileThatIsAbsentHasNoLine)
@@ -175,7 +178,8 @@ TEST(Errors, BracesMayNotNestWithoutEnd)
   {
     text += "x a {\n";
   }
-  EXPECT_EQ(refusal(text).rfind("main.aff:1001: more than 1000 transforms inside each other", 0), 0u)
+  EXPECT_EQ(
+    refusal(text).rfind("main.aff:1001: more than 1000 transforms inside each other", 0), 0u)
     << refusal(text);
 }
 

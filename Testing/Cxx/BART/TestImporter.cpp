@@ -1,5 +1,5 @@
-// The importer's VTK objects: matrices against hand-composed ones, materials, textures, lights, camera,
-// and what SetTime touches and what it does not.
+// The importer's VTK objects: matrices against hand-composed ones, materials, textures, lights,
+// camera, and what SetTime touches and what it does not.
 #include "BARTTest.h"
 
 #include "vtkHybridBARTImporter.h"
@@ -149,8 +149,8 @@ TEST_F(Importer, ComposesTheHierarchysMatricesAtAnyTime)
   for (double time : { 0.0, 2.0, 5.0, 7.5, 10.0 })
   {
     this->Reader->SetTime(time);
-    // Keys of the mover: straight lines in time for place and angle; tension 1 makes the scale a smooth
-    // step from 1 to 2.
+    // Keys of the mover: straight lines in time for place and angle; tension 1 makes the scale a
+    // smooth step from 1 to 2.
     const double u = time / 10.0;
     vtkNew<vtkTransform> expected;
     expected->Translate(time, 0.0, 0.0);
@@ -180,8 +180,8 @@ TEST_F(Importer, MovesMatricesAndNeverMeshes)
   this->Reader->SetTime(4.0);
   for (int i = 0; i < kActors; ++i)
   {
-    EXPECT_EQ(this->surface(i)->GetMTime() != meshes[static_cast<std::size_t>(i)],
-      i == kAnimatedTriangle)
+    EXPECT_EQ(
+      this->surface(i)->GetMTime() != meshes[static_cast<std::size_t>(i)], i == kAnimatedTriangle)
       << i;
     EXPECT_EQ(this->actor(i)->GetMTime() != actors[static_cast<std::size_t>(i)],
       i == kMovedSquare || i == kMovedSquare + 1)
@@ -207,7 +207,8 @@ TEST_F(Importer, MovesAnimatedTriangles)
   this->surface(kAnimatedTriangle)->GetPoint(1, p);
   EXPECT_EQ(p[0], 1.0);
   EXPECT_EQ(p[2], 6.0);
-  EXPECT_EQ(this->surface(kAnimatedTriangle)->GetPointData()->GetNormals()->GetComponent(1, 1), 0.5);
+  EXPECT_EQ(
+    this->surface(kAnimatedTriangle)->GetPointData()->GetNormals()->GetComponent(1, 1), 0.5);
 }
 
 TEST_F(Importer, MovesLightsAndCamera)
@@ -295,7 +296,8 @@ TEST_F(Importer, WithoutTexturesNoneIsNeeded)
 TEST_F(Importer, ATextureThatIsNoImageIsAnError)
 {
   // The scene's own file is there, but is no image.
-  EXPECT_FALSE(this->readText("\ntt hrt_ATextureThatIsNoImageIsAnError.aff 0 0 0 0 0 1 0 0 1 0 0 1 0 0 1"));
+  EXPECT_FALSE(
+    this->readText("\ntt hrt_ATextureThatIsNoImageIsAnError.aff 0 0 0 0 0 1 0 0 1 0 0 1 0 0 1"));
   ASSERT_EQ(this->Errors.size(), 1u);
   EXPECT_NE(this->Errors[0].find("aff:2: the texture "), std::string::npos) << this->Errors[0];
   EXPECT_NE(this->Errors[0].find("is not a right PPM image"), std::string::npos);

@@ -1,6 +1,6 @@
-// Some thousand damaged scenes, the same ones in every run: each is read or refused with its place, and
-// nothing else happens. What a fuzzer finds beyond this becomes a seed of the corpus, and with it a
-// part of this test.
+// Some thousand damaged scenes, the same ones in every run: each is read or refused with its place,
+// and nothing else happens. What a fuzzer finds beyond this becomes a seed of the corpus, and with
+// it a part of this test.
 #include "BARTTest.h"
 
 #include "Testing/Fuzz/BARTFuzzer.h"
@@ -20,8 +20,8 @@ constexpr int kMutationsOfEachSeed = 1000;
 constexpr int kMostDamages = 6;
 
 const char* const kNastyWords[] = { "nan", "-inf", "1e999", "-1", "0", "4294967296",
-  "18446744073709551615", "99999999999", "0x10", "1e-320", "{", "}", "%", "x a {", "k camera {", "m",
-  "tpa", "vertices", "i 0 part.aff", "i 0 main.aff", "1e18", "-1e18", "\xff", "." };
+  "18446744073709551615", "99999999999", "0x10", "1e-320", "{", "}", "%", "x a {", "k camera {",
+  "m", "tpa", "vertices", "i 0 part.aff", "i 0 main.aff", "1e18", "-1e18", "\xff", "." };
 
 std::vector<std::string> seeds()
 {

@@ -181,7 +181,8 @@ TEST(Parser, BindsKeysByNameBeforeAndAfterTheirUse)
 
 TEST(Parser, LaterKeysOfOneNameReplaceEarlierOnes)
 {
-  const std::string keys = "k a { transl 4 0 1 0 0 0 0 0  0 1 0 0 0 0 0  1 1 0 0 0 0 0  1 1 0 0 0 0 0 }";
+  const std::string keys =
+    "k a { transl 4 0 1 0 0 0 0 0  0 1 0 0 0 0 0  1 1 0 0 0 0 0  1 1 0 0 0 0 0 }";
   const Scene scene = parse(keys + " x a { s 0 0 0 1 } k a { visibility 1 0 0 }");
   expectNear(glm::dvec3(poseAt(scene, 0.5).toWorld[0][3]), glm::dvec3(0.0));
   EXPECT_FALSE(poseAt(scene, 0.5).visible[0]);

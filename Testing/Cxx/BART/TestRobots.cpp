@@ -60,7 +60,8 @@ TEST(Robots, HaveTheFiguresOfTheBenchmark)
   }
   EXPECT_EQ(animated, 190);
   EXPECT_EQ(keys.size(), 185u);
-  EXPECT_EQ(still, (std::set<std::string>{ "grip_lift1", "grip_rot1", "gun_lift2", "gun_rot2", "head_rot2" }));
+  EXPECT_EQ(still,
+    (std::set<std::string>{ "grip_lift1", "grip_rot1", "gun_lift2", "gun_rot2", "head_rot2" }));
   EXPECT_EQ(scene.animations.size(), 187u) << "also the camera and an old one";
   EXPECT_EQ(scene.lights.size(), 1u);
   EXPECT_EQ(scene.frames, 800);

@@ -20,7 +20,8 @@ double valueAt(const VectorSpline& spline, double time)
   return spline.at(time).x;
 }
 
-// The speed just before (side -1) or after (side +1) a time. For a cubic the error is of the order of h.
+// The speed just before (side -1) or after (side +1) a time. For a cubic the error is of the order
+// of h.
 double speedAt(const VectorSpline& spline, double time, double side)
 {
   const double h = 1e-6 * side;

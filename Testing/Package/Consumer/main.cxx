@@ -2,6 +2,7 @@
 // success only if the middle of the picture shows the sphere and the corner the background, so that
 // a package which links but draws nothing is caught.
 
+#include "vtkHybridBARTImporter.h"
 #include "vtkHybridMaterial.h"
 #include "vtkHybridRayTracingPass.h"
 
@@ -60,6 +61,13 @@ int main()
   if (middle <= 3 * 100 || corner != 0)
   {
     std::cerr << "no sphere on black: middle " << middle << ", corner " << corner << "\n";
+    return 1;
+  }
+
+  vtkNew<vtkHybridBARTImporter> importer;
+  if (importer->GetNumberOfFrames() != 0)
+  {
+    std::cerr << "an importer that has read nothing has frames\n";
     return 1;
   }
   return 0;
