@@ -93,8 +93,8 @@ private:
         this->Place.origin + ring.height * this->Place.axis + ring.radius * radial;
       const glm::dvec3 normal =
         (this->Inside ? -1.0 : 1.0) * (ring.outward * radial + ring.along * this->Place.axis);
-      this->Points->InsertNextPoint(&point.x);
-      this->Normals->InsertNextTuple(&normal.x);
+      this->Points->InsertNextPoint(point.x, point.y, point.z);
+      this->Normals->InsertNextTuple3(normal.x, normal.y, normal.z);
     }
   }
 
