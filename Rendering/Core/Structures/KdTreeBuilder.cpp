@@ -1,0 +1,364 @@
+// Builds the kd-tree: the recursion over KdTreeSplit.h, its threads, and the layout of the result.
+//
+// Large cells are split one by one, their two halves as tasks of oneTBB; cells below a fixed number of
+// triangles are finished by one thread without asking the heap. The number is fixed, and the finished
+// pieces are laid out in the order of the tree: so the result depends neither on the number of threads
+// nor on their luck.
+#include "Rendering/Core/Structures/KdTreeSplit.h"
+
+#include <tbb/blocked_range.h>
+#include <tbb/enumerable_thread_specific.h>
+#include <tbb/parallel_for.h>
+#include <tbb/parallel_invoke.h>
+
+#include <chrono>
+#include <mutex>
+#include <stdexcept>
+#include <thread>
+
+namespace hrt
+{
+
+namespace
+{
+
+// Below: about a millisecond of work, a thousand times what a task costs.
+constexpr std::uint32_t kTaskTriangles = 2048;
+
+// A finished piece of the tree. Numbers of children and references count from its own start; the root is
+// the first node, and the second is left out to keep pairs at even places.
+struct Piece
+{
+  std::vector<KdNode> nodes;
+  std::vector<std::uint32_t> references;
+};
+
+// The tree of the large cells.
+struct Branch
+{
+  int axis = -1; // -1: a piece, else two branches
+  float plane = 0.0f;
+  std::unique_ptr<Branch> below, above;
+  Piece piece;
+};
+
+} // namespace
+
+class KdTreeBuilder
+{
+public:
+  KdTreeBuilder(const Geometry& geometry, const KdTreeBuildControl& control)
+    : Corners(geometry.positions.data())
+    , Count(static_cast<std::uint32_t>(geometry.triangleCount()))
+    , DepthLimit(kdcost::depthLimit(geometry.triangleCount()))
+    , Control(control)
+    , Caller(std::this_thread::get_id())
+    , Workspaces([this] { return KdWorkspace(this->Count); })
+  {
+  }
+
+  std::unique_ptr<const KdTree> build();
+
+private:
+  // A large cell with the memory of its events.
+  struct OwnedCell : KdCell
+  {
+    std::unique_ptr<KdEvent[]> memory;
+
+    // Room for two events a triangle, and one for writing ahead, in each list.
+    void reserve(std::uint32_t triangles)
+    {
+      const std::size_t room = 2 * std::size_t(triangles) + 1;
+      this->memory.reset(new KdEvent[3 * room]);
+      for (int axis = 0; axis < 3; ++axis)
+      {
+        this->events[axis].events = this->memory.get() + axis * room;
+      }
+    }
+  };
+
+  OwnedCell rootCell() const;
+  void buildBranch(Branch& branch, OwnedCell cell, double share);
+  void buildPiece(Piece& piece, std::size_t node, const KdCell& cell, KdWorkspace& workspace) const;
+  void makeLeaf(Piece& piece, std::size_t node, const KdCell& cell) const;
+  void layOut(const Branch& root, KdTree& tree) const;
+  void copyTriangles(KdTree& tree) const;
+  // Stays true once it was, whatever becomes of the caller's flag.
+  bool aborted() const
+  {
+    if (this->Control.abort && this->Control.abort->load(std::memory_order_relaxed))
+    {
+      this->Aborted.store(true, std::memory_order_relaxed);
+    }
+    return this->Aborted.load(std::memory_order_relaxed);
+  }
+  void advance(double share);
+
+  const glm::vec3* Corners;
+  std::uint32_t Count;
+  int DepthLimit;
+  const KdTreeBuildControl& Control;
+  std::thread::id Caller;
+  tbb::enumerable_thread_specific<KdWorkspace> Workspaces;
+  mutable std::atomic<bool> Aborted{ false };
+  std::mutex Mutex;
+  double Done = 0.0;
+};
+
+void KdTreeBuilder::advance(double share)
+{
+  const std::lock_guard<std::mutex> lock(this->Mutex);
+  this->Done += share;
+  if (this->Control.progress && std::this_thread::get_id() == this->Caller)
+  {
+    this->Control.progress(std::min(this->Done, 1.0));
+  }
+}
+
+KdTreeBuilder::OwnedCell KdTreeBuilder::rootCell() const
+{
+  OwnedCell cell;
+  cell.triangles = this->Count;
+  cell.reserve(this->Count);
+  for (std::size_t i = 0; i < 3 * std::size_t(this->Count); ++i)
+  {
+    cell.box.include(this->Corners[i] + 0.0f); // -0 becomes +0, see KdTreeClip.cpp
+  }
+  tbb::parallel_for(0, 3, [&](int axis) {
+    KdEventList& events = cell.events[axis];
+    for (std::uint32_t i = 0; i < this->Count; ++i)
+    {
+      const glm::vec3* c = this->Corners + 3 * std::size_t(i);
+      const float a = c[0][axis] + 0.0f, b = c[1][axis] + 0.0f, d = c[2][axis] + 0.0f;
+      events.add(std::min(a, std::min(b, d)), std::max(a, std::max(b, d)), i);
+    }
+    const std::unique_ptr<KdEvent[]> scratch(new KdEvent[events.count]);
+    sortEvents(events, scratch.get());
+  });
+  return cell;
+}
+
+void KdTreeBuilder::buildBranch(Branch& branch, OwnedCell cell, double share)
+{
+  if (this->aborted())
+  {
+    return;
+  }
+  if (cell.triangles <= kTaskTriangles)
+  {
+    branch.piece.nodes.resize(2);
+    this->buildPiece(branch.piece, 0, cell, this->Workspaces.local());
+    this->advance(share);
+    return;
+  }
+  const KdSplit split = cheapestSplit(cell, this->DepthLimit);
+  if (split.axis < 0)
+  {
+    branch.piece.nodes.resize(2);
+    this->makeLeaf(branch.piece, 0, cell);
+    this->advance(share);
+    return;
+  }
+  OwnedCell below, above;
+  below.reserve(split.below);
+  above.reserve(split.above);
+  {
+    // Not the thread's own workspace: while the axes are waited for, the thread may finish a piece.
+    KdWorkspace workspace(this->Count);
+    splitCell(cell, split, this->Corners, workspace, below, above,
+      [](const auto& distribute) { tbb::parallel_for(0, 3, distribute); });
+  }
+  cell.memory.reset();
+  branch.axis = split.axis;
+  branch.plane = split.plane;
+  branch.below = std::make_unique<Branch>();
+  branch.above = std::make_unique<Branch>();
+  const double lowerShare = share * split.below / (double(split.below) + split.above);
+  tbb::parallel_invoke(
+    [&] { this->buildBranch(*branch.below, std::move(below), lowerShare); },
+    [&] { this->buildBranch(*branch.above, std::move(above), share - lowerShare); });
+}
+
+void KdTreeBuilder::makeLeaf(Piece& piece, std::size_t node, const KdCell& cell) const
+{
+  const std::size_t first = piece.references.size();
+  for (const KdEvent event : cell.events[0])
+  {
+    if (kindOf(event) != KdEventKind::End)
+    {
+      piece.references.push_back(triangleOf(event));
+    }
+  }
+  piece.nodes[node] = KdNode::leaf(static_cast<std::uint32_t>(first), cell.triangles);
+}
+
+void KdTreeBuilder::buildPiece(
+  Piece& piece, std::size_t node, const KdCell& cell, KdWorkspace& workspace) const
+{
+  const KdSplit split = cheapestSplit(cell, this->DepthLimit);
+  if (split.axis < 0 || this->aborted())
+  {
+    this->makeLeaf(piece, node, cell);
+    return;
+  }
+  const KdArena::Mark mark = workspace.arena.mark();
+  KdCell below, above;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    below.events[axis].events = workspace.arena.allocate(2 * std::size_t(split.below) + 1);
+    above.events[axis].events = workspace.arena.allocate(2 * std::size_t(split.above) + 1);
+  }
+  splitCell(cell, split, this->Corners, workspace, below, above, [](const auto& distribute) {
+    distribute(0);
+    distribute(1);
+    distribute(2);
+  });
+  const std::size_t children = piece.nodes.size();
+  piece.nodes.resize(children + 2);
+  piece.nodes[node] = KdNode::inner(split.axis, split.plane, static_cast<std::uint32_t>(children));
+  this->buildPiece(piece, children, below, workspace);
+  this->buildPiece(piece, children + 1, above, workspace);
+  workspace.arena.release(mark);
+}
+
+namespace
+{
+
+// Where a piece goes in the whole tree.
+struct Place
+{
+  const Piece* piece;
+  std::size_t root;       // its first node
+  std::size_t nodes;      // the others
+  std::size_t references;
+};
+
+// Numbers the nodes of the large cells and the places of the pieces, depth first.
+class Layout
+{
+public:
+  Layout(const Branch& root, std::vector<KdNode>& large)
+    : Large(large)
+  {
+    this->Large.resize(2);
+    this->visit(root, 0);
+    this->Nodes = this->Large.size();
+    for (Place& place : this->Places)
+    {
+      place.nodes = this->Nodes;
+      place.references = this->References;
+      this->Nodes += place.piece->nodes.size() - 2;
+      this->References += place.piece->references.size();
+    }
+  }
+
+  const std::vector<Place>& places() const { return this->Places; }
+  std::size_t nodes() const { return this->Nodes; }
+  std::size_t references() const { return this->References; }
+
+private:
+  void visit(const Branch& branch, std::size_t node)
+  {
+    if (branch.axis < 0)
+    {
+      this->Places.push_back({ &branch.piece, node, 0, 0 });
+      return;
+    }
+    const std::size_t children = this->Large.size();
+    this->Large.resize(children + 2);
+    this->Large[node] =
+      KdNode::inner(branch.axis, branch.plane, static_cast<std::uint32_t>(children));
+    this->visit(*branch.below, children);
+    this->visit(*branch.above, children + 1);
+  }
+
+  std::vector<KdNode>& Large;
+  std::vector<Place> Places;
+  std::size_t Nodes = 0;
+  std::size_t References = 0;
+};
+
+KdNode moved(const KdNode& node, const Place& place)
+{
+  if (node.isLeaf())
+  {
+    return KdNode::leaf(
+      node.first() + static_cast<std::uint32_t>(place.references), node.count());
+  }
+  const std::size_t children = node.children() - 2 + place.nodes;
+  return KdNode::inner(
+    static_cast<int>(node.axis()), node.split(), static_cast<std::uint32_t>(children));
+}
+
+} // namespace
+
+void KdTreeBuilder::layOut(const Branch& root, KdTree& tree) const
+{
+  const Layout layout(root, tree.Nodes);
+  if (layout.nodes() >= kKdTreeMaximumTriangles ||
+    layout.references() > std::numeric_limits<std::uint32_t>::max())
+  {
+    throw std::length_error("kd-tree: too many nodes or references for 32 bits");
+  }
+  tree.Nodes.resize(layout.nodes());
+  tree.References.resize(layout.references());
+  tbb::parallel_for(std::size_t(0), layout.places().size(), [&](std::size_t i) {
+    const Place& place = layout.places()[i];
+    const std::vector<KdNode>& nodes = place.piece->nodes;
+    tree.Nodes[place.root] = moved(nodes[0], place);
+    std::transform(nodes.begin() + 2, nodes.end(), tree.Nodes.begin() + place.nodes,
+      [&](const KdNode& node) { return moved(node, place); });
+    std::copy(place.piece->references.begin(), place.piece->references.end(),
+      tree.References.begin() + place.references);
+  });
+}
+
+void KdTreeBuilder::copyTriangles(KdTree& tree) const
+{
+  tree.Triangles.resize(this->Count);
+  const auto copy = [&](const tbb::blocked_range<std::uint32_t>& range) {
+    for (std::uint32_t i = range.begin(); i < range.end(); ++i)
+    {
+      const glm::vec3* corners = this->Corners + 3 * std::size_t(i);
+      for (int k = 0; k < 12; ++k)
+      {
+        tree.Triangles[i].coordinates[k / 4][k % 4] = corners[k % 4 % 3][k / 4];
+      }
+    }
+  };
+  tbb::parallel_for(tbb::blocked_range<std::uint32_t>(0, this->Count, 4096), copy);
+}
+
+std::unique_ptr<const KdTree> KdTreeBuilder::build()
+{
+  const auto started = std::chrono::steady_clock::now();
+  std::unique_ptr<KdTree> tree(new KdTree);
+  OwnedCell cell = this->rootCell();
+  tree->Box = cell.box;
+  const glm::vec3 most = glm::max(glm::abs(cell.box.lower), glm::abs(cell.box.upper));
+  tree->Reach = this->Count ? std::max({ most.x, most.y, most.z }) : 0.0;
+  Branch root;
+  this->buildBranch(root, std::move(cell), 1.0);
+  if (this->aborted())
+  {
+    return nullptr;
+  }
+  this->layOut(root, *tree);
+  this->copyTriangles(*tree);
+  tree->DepthLimit = this->DepthLimit;
+  tree->Milliseconds =
+    std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - started).count();
+  return tree;
+}
+
+std::unique_ptr<const KdTree> KdTree::build(
+  const Geometry& geometry, const KdTreeBuildControl& control)
+{
+  if (geometry.triangleCount() >= kKdTreeMaximumTriangles)
+  {
+    throw std::length_error("kd-tree: more than 2^30 triangles");
+  }
+  return KdTreeBuilder(geometry, control).build();
+}
+
+} // namespace hrt
