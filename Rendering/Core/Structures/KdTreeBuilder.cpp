@@ -109,9 +109,10 @@ void KdTreeBuilder::advance(double share)
 {
   const std::lock_guard<std::mutex> lock(this->Mutex);
   this->Done += share;
-  if (this->Control.progress && std::this_thread::get_id() == this->Caller)
+  // 1 is left to the end of the build; the shares' sum may come out above it.
+  if (this->Control.progress && std::this_thread::get_id() == this->Caller && this->Done < 1.0)
   {
-    this->Control.progress(std::min(this->Done, 1.0));
+    this->Control.progress(this->Done);
   }
 }
 
@@ -348,6 +349,10 @@ std::unique_ptr<const KdTree> KdTreeBuilder::build()
   tree->DepthLimit = this->DepthLimit;
   tree->Milliseconds =
     std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - started).count();
+  if (this->Control.progress)
+  {
+    this->Control.progress(1.0);
+  }
   return tree;
 }
 

@@ -17,7 +17,7 @@ namespace kdcost
 {
 
 // One step through a node against one triangle test (KdTreeTraversal.h), by the clock.
-inline constexpr double kStep = 0.75;
+inline constexpr double kStep = 2.5;
 // A split that cuts off empty space is favoured: section 3.3 of the paper.
 inline constexpr double kEmptyBonus = 0.8;
 

@@ -3,6 +3,8 @@
 
 #include "Scenes.h"
 
+#include <cstdlib>
+#include <fstream>
 #include <string>
 #include <utility>
 
@@ -100,6 +102,54 @@ inline std::shared_ptr<Geometry> repeated(const glm::vec3 (&corners)[3], int cou
     positions.insert(positions.end(), { corners[0], corners[1], corners[2] });
   }
   return makeGeometry(positions);
+}
+
+// The Stanford bunny, or null where the scene data are absent (see Data/README.md). Reads just that file:
+// ASCII, corners first, triangles only.
+inline std::shared_ptr<Geometry> bunny()
+{
+  const char* named = std::getenv("HRT_DATA_ROOT");
+  std::ifstream file(std::string(named ? named : HRT_DEFAULT_DATA_ROOT) + "/bunny/bunny.ply");
+  std::size_t points = 0, faces = 0;
+  std::string line;
+  while (std::getline(file, line) && line != "end_header")
+  {
+    if (line.rfind("element vertex ", 0) == 0)
+    {
+      points = std::stoul(line.substr(15));
+    }
+    if (line.rfind("element face ", 0) == 0)
+    {
+      faces = std::stoul(line.substr(13));
+    }
+  }
+  std::vector<glm::vec3> corners(points), positions;
+  for (glm::vec3& corner : corners)
+  {
+    float confidence, intensity;
+    file >> corner.x >> corner.y >> corner.z >> confidence >> intensity;
+  }
+  for (std::size_t i = 0; i < faces; ++i)
+  {
+    std::size_t count, a, b, c;
+    file >> count >> a >> b >> c;
+    positions.insert(positions.end(), { corners.at(a), corners.at(b), corners.at(c) });
+  }
+  return file && faces > 0 ? makeGeometry(positions) : nullptr;
+}
+
+// A sphere with bumps: about as many triangles as asked for, none of them large.
+inline std::shared_ptr<Geometry> bumpySphere(double triangles)
+{
+  const int rows = std::max(4, static_cast<int>(std::sqrt(triangles / 4.0)));
+  return grid(
+    2 * rows, rows,
+    [](double s, int j, int n) {
+      const double a = 2.0 * kPi * s, b = kPi * (double(j) / n - 0.5);
+      const double r = 1.0 + 0.05 * std::sin(9.0 * a) * std::cos(3.0 * b) * std::cos(11.0 * b);
+      return r * glm::dvec3(std::cos(a) * std::cos(b), std::sin(a) * std::cos(b), std::sin(b));
+    },
+    false);
 }
 
 // A mesh of every kind, by name.

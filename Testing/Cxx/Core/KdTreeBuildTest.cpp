@@ -1,0 +1,255 @@
+// The kd-tree's build: the same tree as the naive builder makes, whatever the mesh and the threads; what
+// it promises about its cells; how it is watched and called off.
+#include "KdTreeScenes.h"
+#include "Rendering/Core/Structures/KdTreeCost.h"
+#include "Rendering/Core/Structures/KdTreeEvents.h"
+#include "Testing/Cxx/Reference/NaiveKdTree.h"
+
+#include <gtest/gtest.h>
+#include <tbb/global_control.h>
+#include <tbb/task_arena.h>
+
+#include <sstream>
+#include <thread>
+
+namespace
+{
+
+using namespace hrt;
+using scenes::Random;
+
+using Triangles = std::vector<std::uint32_t>;
+
+Triangles sortedList(const KdNode& leaf, const std::vector<std::uint32_t>& references)
+{
+  Triangles list(references.begin() + leaf.first(),
+    references.begin() + leaf.first() + leaf.count());
+  std::sort(list.begin(), list.end());
+  return list;
+}
+
+// Counts the nodes that differ; both trees are walked together, for their numbers may differ.
+int differences(const KdTree& tree, std::size_t node, const reference::NaiveKdTree& naive,
+  std::size_t naiveNode)
+{
+  const KdNode &a = tree.nodes()[node], &b = naive.nodes[naiveNode];
+  if (a.isLeaf() || b.isLeaf())
+  {
+    return a.isLeaf() == b.isLeaf() &&
+        sortedList(a, tree.references()) == sortedList(b, naive.references)
+      ? 0
+      : 1;
+  }
+  if (a.axis() != b.axis() || a.split() != b.split())
+  {
+    return 1;
+  }
+  return differences(tree, a.children(), naive, b.children()) +
+    differences(tree, a.children() + 1, naive, b.children() + 1);
+}
+
+TEST(KdTreeBuild, SplitForSplitAsTheNaiveBuilder)
+{
+  for (int size : { 12, 300, 5000 })
+  {
+    for (const auto& [name, mesh] : scenes::hardMeshes(size))
+    {
+      SCOPED_TRACE(name);
+      const auto tree = KdTree::build(*mesh);
+      const reference::NaiveKdTree naive = reference::naiveKdTree(*mesh);
+      EXPECT_EQ(differences(*tree, 0, naive, 0), 0);
+      EXPECT_EQ(tree->references().size(), naive.references.size());
+    }
+  }
+}
+
+TEST(KdTreeBuild, EventsSortAsTheirPositions)
+{
+  Random random(31);
+  for (const float big : { 1e-40f, 1.0f, 1e30f })
+  {
+    // Enough for the radix sort; multiples of a quarter, so that many are equal.
+    std::vector<KdEvent> events(6000), scratch(6000);
+    KdEventList list{ events.data(), 0 };
+    for (std::uint32_t i = 0; i < 3000; ++i)
+    {
+      const float lower = big * (float(random.below(64)) / 4.0f - 8.0f) + 0.0f;
+      list.add(lower, lower + big * float(random.below(3)), i);
+    }
+    Triangles count(3000, 0);
+    sortEvents(list, scratch.data());
+    for (std::uint32_t i = 0; i < list.count; ++i)
+    {
+      ++count[triangleOf(list.events[i])];
+      if (i > 0)
+      {
+        const KdEvent before = list.events[i - 1], now = list.events[i];
+        EXPECT_LT(before, now);
+        EXPECT_LE(positionOf(before), positionOf(now));
+      }
+    }
+    EXPECT_EQ(std::count(count.begin(), count.end(), 0u), 0);
+  }
+}
+
+// --- What the tree promises -------------------------------------------------------------------------
+
+// Whether some leaf whose cell, grown by the padding, holds the point lists the triangle.
+bool listedAt(const KdTree& tree, std::size_t index, const glm::dvec3& point, std::uint32_t triangle)
+{
+  const KdNode& node = tree.nodes()[index];
+  if (node.isLeaf())
+  {
+    const Triangles list = sortedList(node, tree.references());
+    return std::binary_search(list.begin(), list.end(), triangle);
+  }
+  const double x = point[static_cast<int>(node.axis())];
+  return (x <= node.split() + tree.padding() &&
+           listedAt(tree, node.children(), point, triangle)) ||
+    (x >= node.split() - tree.padding() && listedAt(tree, node.children() + 1, point, triangle));
+}
+
+TEST(KdTreeBuild, EveryPointOfATriangleIsInALeafThatListsIt)
+{
+  Random random(32);
+  for (const auto& [name, mesh] : scenes::hardMeshes(2000))
+  {
+    SCOPED_TRACE(name);
+    const auto tree = KdTree::build(*mesh);
+    int lost = 0;
+    for (std::uint32_t i = 0; i < mesh->triangleCount(); ++i)
+    {
+      const glm::vec3* p = mesh->positions.data() + 3 * std::size_t(i);
+      for (int sample = 0; sample < 8; ++sample)
+      {
+        double u = sample < 3 ? double(sample == 1) : random(0.0, 1.0);
+        double v = sample < 3 ? double(sample == 2) : random(0.0, 1.0);
+        if (u + v > 1.0)
+        {
+          u = 1.0 - u;
+          v = 1.0 - v;
+        }
+        const glm::dvec3 a(p[0]), b(p[1]), c(p[2]);
+        lost += !listedAt(*tree, 0, (1.0 - u - v) * a + u * b + v * c, i);
+      }
+    }
+    EXPECT_EQ(lost, 0);
+  }
+}
+
+TEST(KdTreeBuild, DepthIsLimited)
+{
+  EXPECT_EQ(kdcost::depthLimit(0), 48);
+  EXPECT_EQ(kdcost::depthLimit(1), 48);
+  EXPECT_EQ(kdcost::depthLimit(std::size_t(1) << 34), 52);
+  EXPECT_EQ(kdcost::depthLimit(std::numeric_limits<std::size_t>::max()), 64);
+  for (const auto& [name, mesh] : scenes::hardMeshes(3000))
+  {
+    SCOPED_TRACE(name);
+    const KdTreeQuality quality = KdTree::build(*mesh)->quality();
+    EXPECT_LE(quality.depth, quality.depthLimit);
+  }
+}
+
+// Nothing can tell identical triangles apart: the tree must not try.
+TEST(KdTreeBuild, IdenticalTrianglesStayTogether)
+{
+  const glm::vec3 tilted[3] = { { 0, 0, 0 }, { 1, 0, 0.5f }, { 0, 1, 0.25f } };
+  for (int count : { 1000, 100000 })
+  {
+    const KdTreeQuality quality = KdTree::build(*scenes::repeated(tilted, count))->quality();
+    EXPECT_LE(quality.innerNodes, 8u);
+    EXPECT_LT(quality.references, 2u * static_cast<unsigned>(count));
+  }
+}
+
+TEST(KdTreeBuild, QualityCountsWhatIsThere)
+{
+  // Two parallel squares, five times each, one at each end of their box: both become flat leaves.
+  std::vector<glm::vec3> positions;
+  for (int copy = 0; copy < 10; ++copy)
+  {
+    const float z = copy % 2 ? 8.0f : 0.0f;
+    positions.insert(positions.end(),
+      { { 0, 0, z }, { 1, 0, z }, { 1, 1, z }, { 0, 0, z }, { 1, 1, z }, { 0, 1, z } });
+  }
+  const auto tree = KdTree::build(*scenes::makeGeometry(positions));
+  const KdTreeQuality q = tree->quality();
+  EXPECT_EQ(q.triangles, 20u);
+  EXPECT_EQ(q.leaves, q.innerNodes + 1);
+  EXPECT_EQ(q.references, 20u);
+  EXPECT_EQ(q.emptyLeaves, 1u);
+  EXPECT_EQ(q.longestList, 10u);
+  EXPECT_EQ(q.depth, 2);
+  // Surfaces: the box 34, a flat leaf 2; a line meets the second node always, for it is the whole box.
+  EXPECT_DOUBLE_EQ(q.expectedInnerVisits, 2.0);
+  EXPECT_DOUBLE_EQ(q.expectedLeafVisits, 1.0 + 2.0 * 2.0 / 34.0);
+  EXPECT_DOUBLE_EQ(q.expectedTriangleTests, 20.0 * 2.0 / 34.0);
+  EXPECT_DOUBLE_EQ(q.cost, 2.0 * kdcost::kStep + 20.0 * 2.0 / 34.0);
+  std::ostringstream text;
+  text << q;
+  EXPECT_NE(text.str().find("20 triangles, 20 references, 2 inner nodes, 3 leaves"), std::string::npos)
+    << text.str();
+}
+
+// --- Threads, progress, abort -----------------------------------------------------------------------
+
+TEST(KdTreeBuild, ThreadsDoNotShow)
+{
+  const auto mesh = scenes::bumpySphere(30000); // several tasks
+  // More threads than cores, if need be.
+  const tbb::global_control eight(tbb::global_control::max_allowed_parallelism, 8);
+  std::vector<std::unique_ptr<const KdTree>> trees;
+  for (int threads : { 1, 2, 8 })
+  {
+    tbb::task_arena(threads).execute([&] { trees.push_back(KdTree::build(*mesh)); });
+    EXPECT_TRUE(trees.back()->nodes() == trees.front()->nodes());
+    EXPECT_TRUE(trees.back()->references() == trees.front()->references());
+  }
+  EXPECT_EQ(trees.front()->nodes().size() % 2, 0u); // pairs of children, and the root's place
+}
+
+TEST(KdTreeBuild, ProgressGrowsToOneOnTheCallersThread)
+{
+  const auto mesh = scenes::bumpySphere(30000);
+  for (int threads : { 1, 4 })
+  {
+    std::vector<double> shares;
+    bool elsewhere = false;
+    const std::thread::id caller = std::this_thread::get_id();
+    KdTreeBuildControl control;
+    control.progress = [&](double share) {
+      shares.push_back(share);
+      elsewhere = elsewhere || std::this_thread::get_id() != caller;
+    };
+    tbb::task_arena(threads).execute([&] { EXPECT_TRUE(KdTree::build(*mesh, control)); });
+    EXPECT_FALSE(elsewhere);
+    EXPECT_TRUE(threads > 1 || shares.size() > 10);
+    EXPECT_TRUE(std::is_sorted(shares.begin(), shares.end()));
+    EXPECT_EQ(shares.back(), 1.0);
+    EXPECT_EQ(std::count(shares.begin(), shares.end(), 1.0), 1);
+  }
+}
+
+TEST(KdTreeBuild, AbortGivesNoTree)
+{
+  const auto mesh = scenes::bumpySphere(30000);
+  std::atomic<bool> abort{ true };
+  KdTreeBuildControl control;
+  control.abort = &abort;
+  EXPECT_FALSE(KdTree::build(*mesh, control));
+  // In the middle.
+  abort = false;
+  int calls = 0;
+  control.progress = [&](double) {
+    ++calls;
+    abort = true;
+  };
+  tbb::task_arena(1).execute([&] { EXPECT_FALSE(KdTree::build(*mesh, control)); });
+  EXPECT_EQ(calls, 1);
+  abort = false;
+  control.progress = nullptr;
+  EXPECT_TRUE(KdTree::build(*mesh, control));
+}
+
+} // namespace
