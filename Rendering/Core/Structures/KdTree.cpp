@@ -63,9 +63,10 @@ private:
 KdTreeQuality KdTree::quality() const
 {
   KdTreeQuality quality;
-  quality.triangles = this->Triangles.size();
+  quality.triangles = this->Numbers.size();
   quality.bytes = this->Nodes.size() * sizeof(KdNode) +
-    this->References.size() * sizeof(std::uint32_t) + this->Triangles.size() * sizeof(KdTriangle);
+    (this->References.size() + this->Numbers.size()) * sizeof(std::uint32_t) +
+    this->Triangles.size() * sizeof(KdTriangle);
   quality.depthLimit = this->DepthLimit;
   quality.milliseconds = this->Milliseconds;
   if (quality.triangles > 0)

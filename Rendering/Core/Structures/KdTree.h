@@ -76,10 +76,11 @@ struct KdBox
   }
 };
 
-// A triangle as KdTreeTraversal.h tests it, coordinate by coordinate: four numbers are one load.
+// A triangle as KdTreeTraversal.h tests it: the corners' x, then y, then z. Four numbers are loaded at
+// once; the fourth belongs to the next axis or triangle and is ignored.
 struct KdTriangle
 {
-  float coordinates[3][4]; // [axis][corner]; the fourth repeats the first
+  float coordinates[9];
 };
 
 // What the tree is worth, by the cost model that built it and by counting. "Expected" numbers are
@@ -124,9 +125,12 @@ public:
 
   const KdBox& box() const { return this->Box; }
   const std::vector<KdNode>& nodes() const { return this->Nodes; } // the root is the first
-  // The lists of the leaves: numbers of triangles within the geometry.
+  // The lists of the leaves: places of triangles. Places follow the order in which the leaves first
+  // name the triangles, so that what is tested together lies together in memory.
   const std::vector<std::uint32_t>& references() const { return this->References; }
-  const KdTriangle& triangle(std::uint32_t i) const { return this->Triangles[i]; }
+  const KdTriangle& triangle(std::uint32_t place) const { return this->Triangles[place]; }
+  // The triangle's number within the geometry.
+  std::uint32_t number(std::uint32_t place) const { return this->Numbers[place]; }
 
   // The largest absolute coordinate, the unit of all error bounds.
   double reach() const { return this->Reach; }
@@ -144,7 +148,8 @@ private:
 
   std::vector<KdNode> Nodes;
   std::vector<std::uint32_t> References;
-  std::vector<KdTriangle> Triangles;
+  std::vector<KdTriangle> Triangles; // and one for loading beyond the last
+  std::vector<std::uint32_t> Numbers;
   KdBox Box;
   double Reach = 0.0;
   int DepthLimit = 0;

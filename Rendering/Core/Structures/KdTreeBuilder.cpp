@@ -82,7 +82,7 @@ private:
   void buildPiece(Piece& piece, std::size_t node, const KdCell& cell, KdWorkspace& workspace) const;
   void makeLeaf(Piece& piece, std::size_t node, const KdCell& cell) const;
   void layOut(const Branch& root, KdTree& tree) const;
-  void copyTriangles(KdTree& tree) const;
+  void placeTriangles(KdTree& tree) const;
   // Stays true once it was, whatever becomes of the caller's flag.
   bool aborted() const
   {
@@ -314,20 +314,35 @@ void KdTreeBuilder::layOut(const Branch& root, KdTree& tree) const
   });
 }
 
-void KdTreeBuilder::copyTriangles(KdTree& tree) const
+// Gives the triangles their places: a plain loop, for which comes first is a question of order.
+void KdTreeBuilder::placeTriangles(KdTree& tree) const
 {
-  tree.Triangles.resize(this->Count);
-  const auto copy = [&](const tbb::blocked_range<std::uint32_t>& range) {
-    for (std::uint32_t i = range.begin(); i < range.end(); ++i)
+  std::vector<std::uint32_t> places(this->Count, ~0u);
+  tree.Numbers.reserve(this->Count);
+  for (std::uint32_t& reference : tree.References)
+  {
+    std::uint32_t& place = places[reference];
+    if (place == ~0u)
     {
-      const glm::vec3* corners = this->Corners + 3 * std::size_t(i);
-      for (int k = 0; k < 12; ++k)
+      place = static_cast<std::uint32_t>(tree.Numbers.size());
+      tree.Numbers.push_back(reference);
+    }
+    reference = place;
+  }
+  tree.Triangles.resize(tree.Numbers.size() + 1);
+  const auto copy = [&](const tbb::blocked_range<std::size_t>& range) {
+    for (std::size_t i = range.begin(); i < range.end(); ++i)
+    {
+      const glm::vec3* corners = this->Corners + 3 * std::size_t(tree.Numbers[i]);
+      for (int k = 0; k < 3; ++k)
       {
-        tree.Triangles[i].coordinates[k / 4][k % 4] = corners[k % 4 % 3][k / 4];
+        tree.Triangles[i].coordinates[k] = corners[k].x;
+        tree.Triangles[i].coordinates[3 + k] = corners[k].y;
+        tree.Triangles[i].coordinates[6 + k] = corners[k].z;
       }
     }
   };
-  tbb::parallel_for(tbb::blocked_range<std::uint32_t>(0, this->Count, 4096), copy);
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, tree.Numbers.size(), 4096), copy);
 }
 
 std::unique_ptr<const KdTree> KdTreeBuilder::build()
@@ -345,7 +360,7 @@ std::unique_ptr<const KdTree> KdTreeBuilder::build()
     return nullptr;
   }
   this->layOut(root, *tree);
-  this->copyTriangles(*tree);
+  this->placeTriangles(*tree);
   tree->DepthLimit = this->DepthLimit;
   tree->Milliseconds =
     std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - started).count();

@@ -60,26 +60,30 @@ public:
   // `start`: a point of the ray in the tree's box.
   void set(const glm::dvec3& start, const glm::dvec3& direction, double reach, double slack)
   {
-    const glm::dvec3 lengths = glm::abs(direction);
-    this->Kz = lengths.x >= lengths.y ? (lengths.x >= lengths.z ? 0 : 2)
-                                      : (lengths.y >= lengths.z ? 1 : 2);
-    this->Kx = this->Kz == 2 ? 0 : this->Kz + 1;
-    this->Ky = this->Kx == 2 ? 0 : this->Kx + 1;
-    const double scale = 1.0 / direction[this->Kz];
-    this->ShearX = static_cast<float>(direction[this->Kx] * scale);
-    this->ShearY = static_cast<float>(direction[this->Ky] * scale);
-    this->Start = glm::vec3(start);
+    const double from[3] = { start.x, start.y, start.z };
+    const double along[3] = { direction.x, direction.y, direction.z };
+    const double x = std::abs(along[0]), y = std::abs(along[1]), z = std::abs(along[2]);
+    const int kz = x >= y ? (x >= z ? 0 : 2) : (y >= z ? 1 : 2);
+    const int kx = kz == 2 ? 0 : kz + 1, ky = kx == 2 ? 0 : kx + 1;
+    const int order[3] = { kx, ky, kz };
+    for (int i = 0; i < 3; ++i)
+    {
+      this->Offset[i] = 3 * order[i];
+      this->Start[i] = static_cast<float>(from[order[i]]);
+      this->Shear[i] = static_cast<float>(along[order[i]] / along[kz]);
+    }
     this->Margin = static_cast<float>((16.0 * 0x1p-24 * reach + slack) * (1.0 + 0x1p-20));
   }
 
   bool rejects(const KdTriangle& triangle) const
   {
 #if defined(__SSE2__)
-    const __m128 z = distance(triangle, this->Kz);
-    const __m128 x = _mm_sub_ps(distance(triangle, this->Kx), _mm_mul_ps(_mm_set1_ps(this->ShearX), z));
-    const __m128 y = _mm_sub_ps(distance(triangle, this->Ky), _mm_mul_ps(_mm_set1_ps(this->ShearY), z));
-    const __m128 nextX = nextCorner(x), nextY = nextCorner(y);
-    const __m128 edge = _mm_sub_ps(_mm_mul_ps(x, nextY), _mm_mul_ps(y, nextX));
+    const __m128 z = this->distance(triangle, 2);
+    const __m128 x =
+      _mm_sub_ps(this->distance(triangle, 0), _mm_mul_ps(_mm_set1_ps(this->Shear[0]), z));
+    const __m128 y =
+      _mm_sub_ps(this->distance(triangle, 1), _mm_mul_ps(_mm_set1_ps(this->Shear[1]), z));
+    const __m128 edge = _mm_sub_ps(_mm_mul_ps(x, nextCorner(y)), _mm_mul_ps(y, nextCorner(x)));
     const __m128 margin = _mm_set1_ps(this->Margin);
     const __m128 signs = _mm_set1_ps(-0.0f);
     const __m128 size =
@@ -88,21 +92,22 @@ public:
       _mm_mul_ps(_mm_add_ps(margin, margin), _mm_add_ps(size, nextCorner(size)));
     const int above = _mm_movemask_ps(_mm_cmpgt_ps(edge, threshold));
     const int below = _mm_movemask_ps(_mm_cmplt_ps(edge, _mm_xor_ps(signs, threshold)));
-    return above && below;
+    return (above & kCorners) != 0 && (below & kCorners) != 0;
 #else
-    float x[4], y[4];
-    for (int i = 0; i < 4; ++i)
+    float x[3], y[3];
+    for (int i = 0; i < 3; ++i)
     {
-      const float z = triangle.coordinates[this->Kz][i] - this->Start[this->Kz];
-      x[i] = triangle.coordinates[this->Kx][i] - this->Start[this->Kx] - this->ShearX * z;
-      y[i] = triangle.coordinates[this->Ky][i] - this->Start[this->Ky] - this->ShearY * z;
+      const float z = triangle.coordinates[this->Offset[2] + i] - this->Start[2];
+      x[i] = triangle.coordinates[this->Offset[0] + i] - this->Start[0] - this->Shear[0] * z;
+      y[i] = triangle.coordinates[this->Offset[1] + i] - this->Start[1] - this->Shear[1] * z;
     }
     bool above = false, below = false;
     for (int i = 0; i < 3; ++i)
     {
-      const float edge = x[i] * y[i + 1] - y[i] * x[i + 1];
-      const float size = std::abs(x[i]) + std::abs(y[i]) + std::abs(x[i + 1]) +
-        std::abs(y[i + 1]) + 2.0f * this->Margin;
+      const int j = i == 2 ? 0 : i + 1;
+      const float edge = x[i] * y[j] - y[i] * x[j];
+      const float size = std::abs(x[i]) + std::abs(y[i]) + std::abs(x[j]) + std::abs(y[j]) +
+        2.0f * this->Margin;
       const float threshold = 2.0f * this->Margin * size;
       above = above || edge > threshold;
       below = below || edge < -threshold;
@@ -113,18 +118,20 @@ public:
 
 private:
 #if defined(__SSE2__)
-  __m128 distance(const KdTriangle& triangle, int axis) const
+  static constexpr int kCorners = 7; // the fourth number is none of the triangle's
+  __m128 distance(const KdTriangle& triangle, int i) const
   {
-    return _mm_sub_ps(_mm_loadu_ps(triangle.coordinates[axis]), _mm_set1_ps(this->Start[axis]));
+    const float* numbers = reinterpret_cast<const float*>(&triangle) + this->Offset[i];
+    return _mm_sub_ps(_mm_loadu_ps(numbers), _mm_set1_ps(this->Start[i]));
   }
-  // The fourth corner repeats the first, so its own successor is the second: one edge is tested twice.
-  static __m128 nextCorner(__m128 v) { return _mm_shuffle_ps(v, v, _MM_SHUFFLE(1, 0, 2, 1)); }
+  static __m128 nextCorner(__m128 v) { return _mm_shuffle_ps(v, v, _MM_SHUFFLE(3, 0, 2, 1)); }
 #endif
 
-  int Kx = 0, Ky = 1, Kz = 2;
-  float ShearX = 0.0f, ShearY = 0.0f;
+  // In the order x, y, z of the sheared ray; the last shear is 1.
+  int Offset[3];
+  float Start[3];
+  float Shear[3];
   float Margin = 0.0f;
-  glm::vec3 Start{ 0.0f };
 };
 
 // A ray made ready for one tree, in the tree's coordinates. Its t is that of the ray in the scene: an
@@ -245,7 +252,7 @@ private:
       if (!this->Filter.rejects(tree.triangle(*reference)))
       {
         counters.candidate();
-        this->End = candidate(*reference);
+        this->End = candidate(tree.number(*reference));
       }
     }
   }
