@@ -14,7 +14,7 @@ namespace
 class QualitySum
 {
 public:
-  QualitySum(const std::vector<KdNode>& nodes, const KdBox& box, KdTreeQuality& quality)
+  QualitySum(const KdNode* nodes, const KdBox& box, KdTreeQuality& quality)
     : Nodes(nodes)
     , Root(kdcost::halfSurface(box))
     , Quality(quality)
@@ -53,7 +53,7 @@ private:
     q.expectedTriangleTests += met * leaf.count();
   }
 
-  const std::vector<KdNode>& Nodes;
+  const KdNode* Nodes;
   double Root;
   KdTreeQuality& Quality;
 };
@@ -64,14 +64,14 @@ KdTreeQuality KdTree::quality() const
 {
   KdTreeQuality quality;
   quality.triangles = this->Numbers.size();
-  quality.bytes = this->Nodes.size() * sizeof(KdNode) +
+  quality.bytes = this->Lines.size() * sizeof(KdNodeLine) +
     (this->References.size() + this->Numbers.size()) * sizeof(std::uint32_t) +
     this->Triangles.size() * sizeof(KdTriangle);
   quality.depthLimit = this->DepthLimit;
   quality.milliseconds = this->Milliseconds;
   if (quality.triangles > 0)
   {
-    QualitySum(this->Nodes, this->Box, quality);
+    QualitySum(this->nodes(), this->Box, quality);
   }
   quality.cost =
     kdcost::kStep * quality.expectedInnerVisits + quality.expectedTriangleTests;

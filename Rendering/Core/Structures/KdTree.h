@@ -40,6 +40,13 @@ public:
     return node;
   }
 
+  // An empty leaf.
+  KdNode()
+    : First(0)
+    , Word(kLeaf)
+  {
+  }
+
   bool isLeaf() const { return this->axis() == kLeaf; }
   unsigned axis() const { return this->Word & 3u; }
   float split() const { return this->Split; }
@@ -59,6 +66,14 @@ private:
   std::uint32_t Word;
 };
 static_assert(sizeof(KdNode) == 8, "two children must fit a quarter of a cache line");
+
+// Nodes come in cache lines: a line holds a pair of children, the pairs below them and one more, so that
+// a ray on its way down waits for memory every second or third step only.
+struct alignas(64) KdNodeLine
+{
+  static constexpr std::size_t kNodes = 8;
+  KdNode nodes[kNodes];
+};
 
 // Numbers that a build of N triangles may at most use: 30 bits for a node or a list's length.
 inline constexpr std::uint32_t kKdTreeMaximumTriangles = 1u << 30;
@@ -124,7 +139,7 @@ public:
     const Geometry& geometry, const KdTreeBuildControl& control = {});
 
   const KdBox& box() const { return this->Box; }
-  const std::vector<KdNode>& nodes() const { return this->Nodes; } // the root is the first
+  const KdNode* nodes() const { return this->Lines.front().nodes; } // the root is the first
   // The lists of the leaves: places of triangles. Places follow the order in which the leaves first
   // name the triangles, so that what is tested together lies together in memory.
   const std::vector<std::uint32_t>& references() const { return this->References; }
@@ -146,7 +161,7 @@ private:
   friend class KdTreeBuilder;
   KdTree() = default;
 
-  std::vector<KdNode> Nodes;
+  std::vector<KdNodeLine> Lines;
   std::vector<std::uint32_t> References;
   std::vector<KdTriangle> Triangles; // and one for loading beyond the last
   std::vector<std::uint32_t> Numbers;

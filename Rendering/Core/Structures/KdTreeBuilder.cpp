@@ -293,25 +293,99 @@ KdNode moved(const KdNode& node, const Place& place)
 
 } // namespace
 
+// Rearranges a tree's nodes in cache lines (see KdNodeLine): each line is filled breadth first from the pair
+// where it begins, and what is left below goes to later lines, lower cells first.
+class CacheLines
+{
+public:
+  CacheLines(const std::vector<KdNode>& nodes, std::vector<KdNodeLine>& lines)
+    : From(nodes)
+    , To(lines)
+  {
+    constexpr std::size_t kNodes = KdNodeLine::kNodes;
+    this->To.resize((nodes.size() + kNodes - 1) / kNodes);
+    this->at(0) = nodes[0];
+    this->Next = 2;
+    this->enqueue(0);
+    while (!this->Waiting.empty())
+    {
+      this->Line.assign(1, this->Waiting.back());
+      this->Waiting.pop_back();
+      for (std::size_t i = 0; i < this->Line.size(); ++i)
+      {
+        this->placePair(this->Line[i]);
+        if (this->Next % kNodes == 0)
+        {
+          // Full: the others begin lines of their own, the last one first.
+          this->Waiting.insert(this->Waiting.end(), this->Line.rbegin(),
+            this->Line.rend() - static_cast<std::ptrdiff_t>(i + 1));
+          break;
+        }
+      }
+    }
+  }
+
+private:
+  KdNode& at(std::size_t i)
+  {
+    return this->To[i / KdNodeLine::kNodes].nodes[i % KdNodeLine::kNodes];
+  }
+
+  // The new place of a node whose children have none yet.
+  void enqueue(std::size_t parent)
+  {
+    if (!this->at(parent).isLeaf())
+    {
+      this->Waiting.push_back(static_cast<std::uint32_t>(parent));
+    }
+  }
+
+  // Places the children of a node that has its place; they still name their own children's old places.
+  void placePair(std::uint32_t parent)
+  {
+    KdNode& node = this->at(parent);
+    const std::size_t old = node.children();
+    node = KdNode::inner(
+      static_cast<int>(node.axis()), node.split(), static_cast<std::uint32_t>(this->Next));
+    for (std::size_t side = 0; side < 2; ++side)
+    {
+      this->at(this->Next) = this->From[old + side];
+      if (!this->From[old + side].isLeaf())
+      {
+        this->Line.push_back(static_cast<std::uint32_t>(this->Next));
+      }
+      ++this->Next;
+    }
+  }
+
+  const std::vector<KdNode>& From;
+  std::vector<KdNodeLine>& To;
+  std::size_t Next = 0;
+  std::vector<std::uint32_t> Line;    // parents whose children go to the line at hand
+  std::vector<std::uint32_t> Waiting; // parents whose children begin lines
+};
+
 void KdTreeBuilder::layOut(const Branch& root, KdTree& tree) const
 {
-  const Layout layout(root, tree.Nodes);
+  std::vector<KdNode> all;
+  const Layout layout(root, all);
   if (layout.nodes() >= kKdTreeMaximumTriangles ||
     layout.references() > std::numeric_limits<std::uint32_t>::max())
   {
     throw std::length_error("kd-tree: too many nodes or references for 32 bits");
   }
-  tree.Nodes.resize(layout.nodes());
+  all.resize(layout.nodes());
   tree.References.resize(layout.references());
   tbb::parallel_for(std::size_t(0), layout.places().size(), [&](std::size_t i) {
     const Place& place = layout.places()[i];
     const std::vector<KdNode>& nodes = place.piece->nodes;
-    tree.Nodes[place.root] = moved(nodes[0], place);
-    std::transform(nodes.begin() + 2, nodes.end(), tree.Nodes.begin() + place.nodes,
+    all[place.root] = moved(nodes[0], place);
+    std::transform(nodes.begin() + 2, nodes.end(), all.begin() + static_cast<std::ptrdiff_t>(place.nodes),
       [&](const KdNode& node) { return moved(node, place); });
     std::copy(place.piece->references.begin(), place.piece->references.end(),
-      tree.References.begin() + place.references);
+      tree.References.begin() + static_cast<std::ptrdiff_t>(place.references));
   });
+  CacheLines(all, tree.Lines);
 }
 
 // Gives the triangles their places: a plain loop, for which comes first is a question of order.

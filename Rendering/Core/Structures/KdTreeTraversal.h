@@ -169,7 +169,7 @@ public:
     Entry stack[kStackSize];
     int size = 0;
     Mailbox mailbox;
-    const KdNode* const nodes = tree.nodes().data();
+    const KdNode* const nodes = tree.nodes();
     std::uint32_t index = 0;
     double start = this->Start, end = this->End;
     for (;;)
