@@ -2,6 +2,7 @@
 #include "Rendering/OpenGL2/FrameRenderer.h"
 
 #include "Rendering/Core/Structures/EmbreeStructure.h"
+#include "Rendering/Core/Structures/KdTreeStructure.h"
 
 #include "vtkOpenGLRenderWindow.h"
 
@@ -28,8 +29,12 @@ TracerSettings tracerSettings(const Settings& settings)
   return tracing;
 }
 
-std::unique_ptr<Structure> makeStructure(Accelerator)
+std::unique_ptr<Structure> makeStructure(Accelerator accelerator)
 {
+  if (accelerator == Accelerator::KdTree)
+  {
+    return std::make_unique<KdTreeStructure>();
+  }
   return std::make_unique<EmbreeStructure>();
 }
 

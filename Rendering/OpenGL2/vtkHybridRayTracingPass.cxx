@@ -67,6 +67,7 @@ void vtkHybridRayTracingPass::PrintSelf(ostream& os, vtkIndent indent)
   const char* const visibilities[] = { "ItemBuffer", "DirectRendering", "RayCasting" };
   os << indent << "Visibility: " << visibilities[this->Visibility] << "\n";
   os << indent << "PrimaryShading: " << (this->PrimaryShading == GPU ? "GPU" : "CPU") << "\n";
+  os << indent << "Accelerator: " << (this->Accelerator == Embree ? "Embree" : "KdTree") << "\n";
   os << indent << "ShadowMode: " << (this->ShadowMode == ShadowsOff ? "Off" : "ShadowMaps") << "\n";
   os << indent << "ShadowMapResolution: " << this->ShadowMapResolution << "\n";
   os << indent << "Reflections: " << (this->Reflections ? "On" : "Off") << "\n";
@@ -108,6 +109,21 @@ void vtkHybridRayTracingPass::SetPrimaryShading(int shading)
   if (this->PrimaryShading != shading)
   {
     this->PrimaryShading = shading;
+    this->Modified();
+  }
+}
+
+//------------------------------------------------------------------------------
+void vtkHybridRayTracingPass::SetAccelerator(int accelerator)
+{
+  if (accelerator != Embree && accelerator != KdTree)
+  {
+    vtkErrorMacro("SetAccelerator: " << accelerator << " is neither Embree (0) nor KdTree (1)");
+    return;
+  }
+  if (this->Accelerator != accelerator)
+  {
+    this->Accelerator = accelerator;
     this->Modified();
   }
 }
@@ -344,6 +360,8 @@ std::string vtkHybridRayTracingPass::TraceFrame(const vtkRenderState* s,
                                                        : hrt::Visibility::ItemBuffer;
   settings.primaryShading =
     this->PrimaryShading == CPU ? hrt::PrimaryShading::CPU : hrt::PrimaryShading::GPU;
+  settings.accelerator =
+    this->Accelerator == KdTree ? hrt::Accelerator::KdTree : hrt::Accelerator::Embree;
   settings.shadows =
     this->ShadowMode == ShadowsOff ? hrt::ShadowMode::Off : hrt::ShadowMode::ShadowMaps;
   settings.shadowMapResolution = this->ShadowMapResolution;

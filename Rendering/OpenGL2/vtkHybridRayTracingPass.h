@@ -103,6 +103,25 @@ public:
   void SetPrimaryShadingToCPU() { this->SetPrimaryShading(CPU); }
   ///@}
 
+  enum AcceleratorType
+  {
+    Embree = 0,
+    KdTree = 1
+  };
+
+  ///@{
+  /**
+   * The structure that rays are traced through. Embree: Embree's hierarchies. KdTree: the paper's
+   * kd-tree, by the O(N log N) surface area heuristic of Wald and Havran (2006); slower to build.
+   * Both let the same kernel decide every triangle in double precision: the picture is the same to
+   * the last bit. Default: Embree.
+   */
+  void SetAccelerator(int accelerator);
+  vtkGetMacro(Accelerator, int);
+  void SetAcceleratorToEmbree() { this->SetAccelerator(Embree); }
+  void SetAcceleratorToKdTree() { this->SetAccelerator(KdTree); }
+  ///@}
+
   enum ShadowModeType
   {
     ShadowsOff = 0,
@@ -221,6 +240,7 @@ private:
 
   int Visibility = ItemBuffer;
   int PrimaryShading = GPU;
+  int Accelerator = Embree;
   int ShadowMode = ShadowMaps;
   int ShadowMapResolution = 2048;
   bool Reflections = true;

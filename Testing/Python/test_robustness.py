@@ -234,11 +234,17 @@ def test_changed_data_is_seen(render):
     assert large > 2 * small
 
 
-@pytest.mark.expects_vtk_messages("Visibility", "ShadowMode", "no buffer")
+@pytest.mark.expects_vtk_messages(
+    "Visibility", "PrimaryShading", "Accelerator", "ShadowMode", "no buffer"
+)
 def test_wrong_settings_are_refused():
     rt = vtkHybridRayTracingPass()
     rt.SetVisibility(17)
     assert rt.GetVisibility() == rt.ItemBuffer
+    rt.SetPrimaryShading(2)
+    assert rt.GetPrimaryShading() == rt.GPU
+    rt.SetAccelerator(-1)
+    assert rt.GetAccelerator() == rt.Embree
     rt.SetShadowMode(-1)
     assert rt.GetShadowMode() == rt.ShadowMaps
     rt.SetBuffers(["depth", "nonsense"])

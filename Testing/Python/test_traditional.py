@@ -146,3 +146,19 @@ def test_near_plane_cuts_as_the_rasteriser_does(render):
     assert (pictures[0] >= 0).sum() > 1000
     # The cut through the meshes is one more outline.
     assert np.count_nonzero(pictures[0] != pictures[1]) / pictures[0].size < 0.004
+
+
+def test_accelerators_show_the_same_picture_to_the_last_bit(render):
+    renderer = lively()
+    rt = vtkHybridRayTracingPass()
+    choose(rt, "traditional")
+    renderer.SetPass(rt)
+    pictures = []
+    for accelerator in ("Embree", "KdTree", "Embree"):
+        getattr(rt, "SetAcceleratorTo" + accelerator)()
+        renderer.GetActiveCamera().Azimuth(1e-9)  # a new picture, by the new structure
+        pictures.append(render(renderer, (300, 200)))
+        assert statistics(rt)["stages"]["structure"]["ran"]
+    for picture in pictures[1:]:
+        # The camera has moved by less than any rounding of a colour shows.
+        assert np.count_nonzero(picture != pictures[0]) <= 3
