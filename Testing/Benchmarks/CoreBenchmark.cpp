@@ -294,6 +294,10 @@ void printBuild(const Fastest& fastest)
   const std::string name = "build/" + Scene::get().name;
   const double one = fastest.seconds(name + " 1 thread"), two = fastest.seconds(name + " 2 threads");
   const double naive = fastest.seconds(name + " naive");
+  if (one == 0.0 || two == 0.0 || naive == 0.0)
+  {
+    return;
+  }
   std::printf("\n%s: %.1f ms with 1 thread, %.1f ms with 2 (%.2f times as fast), naive builder %.1f "
               "ms (%.2f times as long as with 1 thread)\n",
     name.c_str(), 1e3 * one, 1e3 * two, one / two, 1e3 * naive, naive / one);
@@ -316,8 +320,11 @@ void printGrowth(const Fastest& fastest)
       sxy += x * y;
     }
   }
-  std::printf(
-    "build time grows with the triangles to the power of %.3f\n", (n * sxy - sx * sy) / (n * sxx - sx * sx));
+  if (n >= 2)
+  {
+    std::printf("build time grows with the triangles to the power of %.3f\n",
+      (n * sxy - sx * sy) / (n * sxx - sx * sx));
+  }
 }
 
 void printRays(const Fastest& fastest)
@@ -327,6 +334,10 @@ void printRays(const Fastest& fastest)
     "tests", "exact");
   for (const char* kind : kKinds)
   {
+    if (fastest.seconds(std::string("KdTreeStructure/") + kind) == 0.0)
+    {
+      continue;
+    }
     const Rays& rays = Scene::get().rays.at(kind);
     const double millions = 1e-6 * double(rays.size());
     const double native = millions / fastest.seconds(std::string("native Embree/") + kind);

@@ -1,7 +1,8 @@
 """What a frame costs: the hybrid pass beside VTK's own renderer, frame by frame in turn in one window, so
-that a noisy machine disturbs both alike. Prints medians with quartiles and the ratio; writes JSON.
+that a noisy machine disturbs both alike. Prints medians with quartiles and the ratio; writes JSON. Then the
+core by itself, where hrtCoreBenchmark was built: the kd-tree's build and rays beside Embree's.
 
-    ./run bench [--quick] [--frames N] [--json FILE]
+    ./run bench [--quick] [--frames N] [--json FILE] [--no-core]
 
 Each case says what changes between its frames. Times are wall-clock milliseconds of a whole
 vtkRenderWindow.Render with the GL commands finished, 800 x 600, no multisampling.
@@ -13,6 +14,7 @@ import os
 import pathlib
 import platform
 import statistics as st
+import subprocess
 import sys
 import time
 
@@ -127,11 +129,22 @@ def models():
         print("bunny: skipped, no scene data (see Data/README.md)")
 
 
+def run_core():
+    """The table of hrtCoreBenchmark, which is built only where google-benchmark is installed."""
+    program = pathlib.Path(__file__).resolve().parents[2] / "build/bin/hrtCoreBenchmark"
+    if not program.is_file():
+        print("core: skipped, not built (needs libbenchmark-dev)")
+        return
+    print("\ncore:", flush=True)
+    subprocess.run([str(program)], check=True, stderr=subprocess.DEVNULL)
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--quick", action="store_true", help="few frames, for a first impression")
     parser.add_argument("--frames", type=int, help="frames a case after warm-up (default 25)")
     parser.add_argument("--json", help="also write all figures to this file")
+    parser.add_argument("--no-core", action="store_true", help="leave out the core's own benchmark")
     arguments = parser.parse_args()
     frames = arguments.frames or (7 if arguments.quick else 25)
 
@@ -154,6 +167,8 @@ def main():
                   "cores": os.cpu_count(), "machine": platform.machine(), "frames": frames}
         pathlib.Path(arguments.json).write_text(
             json.dumps({**header, "results": results}, indent=1) + "\n", encoding="utf-8")
+    if not arguments.no_core:
+        run_core()
 
 
 if __name__ == "__main__":

@@ -63,9 +63,9 @@ private:
 KdTreeQuality KdTree::quality() const
 {
   KdTreeQuality quality;
-  quality.triangles = this->Numbers.size();
+  quality.triangles = this->Count;
   quality.bytes = this->Lines.size() * sizeof(KdNodeLine) +
-    (this->References.size() + this->Numbers.size()) * sizeof(std::uint32_t) +
+    this->References.size() * sizeof(std::uint32_t) +
     this->Triangles.size() * sizeof(KdTriangle);
   quality.depthLimit = this->DepthLimit;
   quality.milliseconds = this->Milliseconds;

@@ -140,12 +140,11 @@ public:
 
   const KdBox& box() const { return this->Box; }
   const KdNode* nodes() const { return this->Lines.front().nodes; } // the root is the first
-  // The lists of the leaves: places of triangles. Places follow the order in which the leaves first
-  // name the triangles, so that what is tested together lies together in memory.
+  // The lists of the leaves: numbers of triangles within the geometry.
   const std::vector<std::uint32_t>& references() const { return this->References; }
-  const KdTriangle& triangle(std::uint32_t place) const { return this->Triangles[place]; }
-  // The triangle's number within the geometry.
-  std::uint32_t number(std::uint32_t place) const { return this->Numbers[place]; }
+  // The triangle of a place in the lists. A copy for each: a leaf's triangles then lie side by side and
+  // cost one wait for memory, where a list of numbers alone would cost one more and then one each.
+  const KdTriangle& triangle(std::size_t reference) const { return this->Triangles[reference]; }
 
   // The largest absolute coordinate, the unit of all error bounds.
   double reach() const { return this->Reach; }
@@ -164,7 +163,7 @@ private:
   std::vector<KdNodeLine> Lines;
   std::vector<std::uint32_t> References;
   std::vector<KdTriangle> Triangles; // and one for loading beyond the last
-  std::vector<std::uint32_t> Numbers;
+  std::size_t Count = 0;             // triangles of the geometry
   KdBox Box;
   double Reach = 0.0;
   int DepthLimit = 0;

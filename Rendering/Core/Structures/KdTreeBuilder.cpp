@@ -82,7 +82,7 @@ private:
   void buildPiece(Piece& piece, std::size_t node, const KdCell& cell, KdWorkspace& workspace) const;
   void makeLeaf(Piece& piece, std::size_t node, const KdCell& cell) const;
   void layOut(const Branch& root, KdTree& tree) const;
-  void placeTriangles(KdTree& tree) const;
+  void copyTriangles(KdTree& tree) const;
   // Stays true once it was, whatever becomes of the caller's flag.
   bool aborted() const
   {
@@ -388,26 +388,13 @@ void KdTreeBuilder::layOut(const Branch& root, KdTree& tree) const
   CacheLines(all, tree.Lines);
 }
 
-// Gives the triangles their places: a plain loop, for which comes first is a question of order.
-void KdTreeBuilder::placeTriangles(KdTree& tree) const
+void KdTreeBuilder::copyTriangles(KdTree& tree) const
 {
-  std::vector<std::uint32_t> places(this->Count, ~0u);
-  tree.Numbers.reserve(this->Count);
-  for (std::uint32_t& reference : tree.References)
-  {
-    std::uint32_t& place = places[reference];
-    if (place == ~0u)
-    {
-      place = static_cast<std::uint32_t>(tree.Numbers.size());
-      tree.Numbers.push_back(reference);
-    }
-    reference = place;
-  }
-  tree.Triangles.resize(tree.Numbers.size() + 1);
+  tree.Triangles.resize(tree.References.size() + 1);
   const auto copy = [&](const tbb::blocked_range<std::size_t>& range) {
     for (std::size_t i = range.begin(); i < range.end(); ++i)
     {
-      const glm::vec3* corners = this->Corners + 3 * std::size_t(tree.Numbers[i]);
+      const glm::vec3* corners = this->Corners + 3 * std::size_t(tree.References[i]);
       for (int k = 0; k < 3; ++k)
       {
         tree.Triangles[i].coordinates[k] = corners[k].x;
@@ -416,7 +403,7 @@ void KdTreeBuilder::placeTriangles(KdTree& tree) const
       }
     }
   };
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, tree.Numbers.size(), 4096), copy);
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, tree.References.size(), 4096), copy);
 }
 
 std::unique_ptr<const KdTree> KdTreeBuilder::build()
@@ -434,7 +421,8 @@ std::unique_ptr<const KdTree> KdTreeBuilder::build()
     return nullptr;
   }
   this->layOut(root, *tree);
-  this->placeTriangles(*tree);
+  this->copyTriangles(*tree);
+  tree->Count = this->Count;
   tree->DepthLimit = this->DepthLimit;
   tree->Milliseconds =
     std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - started).count();

@@ -219,7 +219,8 @@ private:
   // One entry a level: see kdcost::kDepthLimitMost.
   static constexpr int kStackSize = 64;
 
-  // The triangles tested last, by the lowest bits of their numbers: a large triangle lies in many leaves.
+  // The triangles tested last, by the lowest bits of their numbers: a large triangle lies in many leaves,
+  // and the exact test is worth being spared, other than the filter.
   // Amanatides and Woo: "A Fast Voxel Traversal Algorithm for Ray Tracing", Eurographics 1987; hashed as
   // in Mitsuba, so that rays of several threads need no memory per triangle.
   struct Mailbox
@@ -240,19 +241,19 @@ private:
   void testLeaf(const KdTree& tree, const KdNode& leaf, Mailbox& mailbox, Candidate&& candidate,
     Counters& counters)
   {
-    const std::uint32_t* reference = tree.references().data() + leaf.first();
-    const std::uint32_t* const last = reference + leaf.count();
-    for (; reference != last; ++reference)
+    const std::size_t last = std::size_t(leaf.first()) + leaf.count();
+    for (std::size_t i = leaf.first(); i < last; ++i)
     {
-      if (mailbox.tested(*reference))
+      counters.triangleTest();
+      if (this->Filter.rejects(tree.triangle(i)))
       {
         continue;
       }
-      counters.triangleTest();
-      if (!this->Filter.rejects(tree.triangle(*reference)))
+      const std::uint32_t triangle = tree.references()[i];
+      if (!mailbox.tested(triangle))
       {
         counters.candidate();
-        this->End = candidate(tree.number(*reference));
+        this->End = candidate(triangle);
       }
     }
   }
