@@ -45,9 +45,13 @@ glm::dmat4 positionsToScene(const Part& part, const glm::dvec3& sceneOrigin)
 Corners sceneCorners(
   const Geometry& geometry, const glm::dmat4& positionsToScene, std::size_t triangle)
 {
-  const glm::vec3* corner = geometry.positions.data() + 3 * triangle;
-  return { transformPoint(positionsToScene, corner[0]), transformPoint(positionsToScene, corner[1]),
-    transformPoint(positionsToScene, corner[2]) };
+  return sceneCorners(geometry.positions.data() + 3 * triangle, positionsToScene);
+}
+
+Corners sceneCorners(const glm::vec3* positions, const glm::dmat4& positionsToScene)
+{
+  return { transformPoint(positionsToScene, positions[0]),
+    transformPoint(positionsToScene, positions[1]), transformPoint(positionsToScene, positions[2]) };
 }
 
 // Twice the signed areas that the ray's foot spans with each edge, and the corners' depths.

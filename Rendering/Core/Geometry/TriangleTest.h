@@ -45,6 +45,9 @@ glm::dmat4 positionsToScene(const Part& part, const glm::dvec3& sceneOrigin);
 Corners sceneCorners(
   const Geometry& geometry, const glm::dmat4& positionsToScene, std::size_t triangle);
 
+// The same from copies of the triangle's three positions.
+Corners sceneCorners(const glm::vec3* positions, const glm::dmat4& positionsToScene);
+
 // A ray with the shear that makes it the z axis, to be tested against many triangles.
 class ShearedRay
 {

@@ -1,4 +1,4 @@
-// Embree 3 and Embree 4 under one spelling: only what EmbreeStructure.cpp calls. The versions
+// Embree 3 and Embree 4 under one spelling: only what the structure over Embree calls. The versions
 // differ in the header's folder, in the name of a query's context and in how it reaches the query.
 #pragma once
 
@@ -12,6 +12,9 @@ namespace hrt
 {
 namespace embree
 {
+
+// Rays that Embree traverses together at most.
+inline constexpr unsigned int kPacket = 16;
 
 #if RTC_VERSION_MAJOR >= 4
 
@@ -38,6 +41,24 @@ inline void occluded(RTCScene scene, QueryContext& context, RTCRay& ray)
   rtcOccluded1(scene, &ray, &arguments);
 }
 
+inline void intersect(RTCScene scene, QueryContext& context, const int* valid, RTCRayHit16& rayHit)
+{
+  RTCIntersectArguments arguments;
+  rtcInitIntersectArguments(&arguments);
+  arguments.context = &context;
+  arguments.flags = RTC_RAY_QUERY_FLAG_COHERENT;
+  rtcIntersect16(valid, scene, &rayHit, &arguments);
+}
+
+inline void occluded(RTCScene scene, QueryContext& context, const int* valid, RTCRay16& ray)
+{
+  RTCOccludedArguments arguments;
+  rtcInitOccludedArguments(&arguments);
+  arguments.context = &context;
+  arguments.flags = RTC_RAY_QUERY_FLAG_COHERENT;
+  rtcOccluded16(valid, scene, &ray, &arguments);
+}
+
 #else
 
 using QueryContext = RTCIntersectContext;
@@ -55,6 +76,18 @@ inline void intersect(RTCScene scene, QueryContext& context, RTCRayHit& rayHit)
 inline void occluded(RTCScene scene, QueryContext& context, RTCRay& ray)
 {
   rtcOccluded1(scene, &context, &ray);
+}
+
+inline void intersect(RTCScene scene, QueryContext& context, const int* valid, RTCRayHit16& rayHit)
+{
+  context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+  rtcIntersect16(valid, scene, &context, &rayHit);
+}
+
+inline void occluded(RTCScene scene, QueryContext& context, const int* valid, RTCRay16& ray)
+{
+  context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+  rtcOccluded16(valid, scene, &context, &ray);
 }
 
 #endif

@@ -1,505 +1,592 @@
-// Implements the ray structure over Embree: see the header for why triangles are user geometry.
+// Implements the ray structure over Embree: which hierarchies there are (by Grouping.h), the top level
+// that holds them, and the way of single rays and packets through both.
 #include "Rendering/Core/Structures/EmbreeStructure.h"
 
-#include "Rendering/Core/Geometry/TriangleTest.h"
-#include "Rendering/Core/Structures/EmbreeShim.h"
-#include "Rendering/Core/Structures/TraversalRay.h"
+#include "Rendering/Core/Structures/EmbreeDevice.h"
+#include "Rendering/Core/Structures/EmbreeHierarchy.h"
+#include "Rendering/Core/Structures/EmbreeSearch.h"
+#include "Rendering/Core/Structures/Grouping.h"
 
+#include <algorithm>
 #include <chrono>
 #include <limits>
-#include <mutex>
-#include <stdexcept>
+#include <optional>
 #include <unordered_map>
 #include <utility>
 #include <vector>
 
 namespace hrt
 {
+namespace embree
+{
 
 namespace
 {
 
-// An Embree device and the words of its last error.
-class Device
+// With this many rays or fewer a packet is slower than single rays.
+constexpr int kFewRays = 2;
+
+void traverseOne(RTCScene scene, const Query& packet, unsigned int i, bool anyHit)
 {
-public:
-  explicit Device(const std::string& configuration)
-    : Handle(rtcNewDevice(configuration.empty() ? nullptr : configuration.c_str()))
+  Query query(packet.passages + i);
+  query.members = packet.members;
+  const Passage& passage = *query.passages;
+  RTCRayHit rayHit{};
+  RTCRay& ray = rayHit.ray;
+  ray.org_x = passage.traversal.origin.x;
+  ray.org_y = passage.traversal.origin.y;
+  ray.org_z = passage.traversal.origin.z;
+  ray.dir_x = passage.traversal.direction.x;
+  ray.dir_y = passage.traversal.direction.y;
+  ray.dir_z = passage.traversal.direction.z;
+  ray.tfar = passage.sieve.end;
+  ray.mask = ~0u;
+  if (anyHit)
   {
-    if (!this->Handle)
+    occluded(scene, query, ray);
+    return;
+  }
+  rayHit.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+  intersect(scene, query, rayHit);
+}
+
+// Embree 3 and 4 lay out the rays of a packet alike, as the first member of a packet of hits.
+void traversePacket(RTCScene scene, Query& query, unsigned int mask, bool anyHit)
+{
+  alignas(64) int valid[kPacket];
+  alignas(64) RTCRayHit16 rayHit{};
+  RTCRay16& ray = rayHit.ray;
+  for (unsigned int i = 0; i < kPacket; ++i)
+  {
+    valid[i] = (mask >> i & 1u) != 0 ? -1 : 0;
+    if (!valid[i])
     {
-      throw std::runtime_error("Embree: no device" + describe(rtcGetDeviceError(nullptr)));
+      continue;
     }
-    rtcSetDeviceErrorFunction(this->Handle, &Device::remember, this);
-    try
-    {
-      this->check("creating the device");
-    }
-    catch (...)
-    {
-      rtcReleaseDevice(this->Handle);
-      throw;
-    }
+    const Passage& passage = query.passages[i];
+    ray.org_x[i] = passage.traversal.origin.x;
+    ray.org_y[i] = passage.traversal.origin.y;
+    ray.org_z[i] = passage.traversal.origin.z;
+    ray.dir_x[i] = passage.traversal.direction.x;
+    ray.dir_y[i] = passage.traversal.direction.y;
+    ray.dir_z[i] = passage.traversal.direction.z;
+    ray.tfar[i] = passage.sieve.end;
+    ray.mask[i] = ~0u;
+    ray.id[i] = i;
+    rayHit.hit.geomID[i] = RTC_INVALID_GEOMETRY_ID;
+  }
+  if (anyHit)
+  {
+    occluded(scene, query, valid, ray);
+  }
+  else
+  {
+    intersect(scene, query, valid, rayHit);
+  }
+}
+
+// Traces the passages that the mask names through the scene.
+void traverse(RTCScene scene, Query& query, unsigned int mask, bool anyHit)
+{
+  if (__builtin_popcount(mask) > kFewRays)
+  {
+    traversePacket(scene, query, mask, anyHit);
+    return;
+  }
+  for (; mask != 0; mask &= mask - 1)
+  {
+    traverseOne(scene, query, static_cast<unsigned int>(__builtin_ctz(mask)), anyHit);
+  }
+}
+
+// A hierarchy with its place in the scene.
+struct Placed
+{
+  std::shared_ptr<const Hierarchy> hierarchy;
+  glm::dmat4 fromScene{ 1.0 };
+  bool onlyShifted = false; // fromScene is a translation
+  TraversalBox box;         // in scene coordinates
+  std::size_t firstMember = 0;
+  bool visibleToRays = false; // some member is
+  bool castsShadow = false;
+
+  bool operator==(const Placed& o) const
+  {
+    return hierarchy == o.hierarchy && fromScene == o.fromScene && box.lower == o.box.lower &&
+      box.upper == o.box.upper;
   }
 
-  ~Device() { rtcReleaseDevice(this->Handle); }
-  Device(const Device&) = delete;
-  Device& operator=(const Device&) = delete;
-
-  RTCDevice handle() const { return this->Handle; }
-
-  // Throws when a call since the last check failed on this thread.
-  void check(const char* doing)
+  // Makes the passage through the hierarchy; false when the ray misses it.
+  bool enter(Search& search, Passage& passage) const
   {
-    const RTCError error = rtcGetDeviceError(this->Handle);
-    if (error == RTC_ERROR_NONE)
+    passage.search = &search;
+    const Ray& ray = search.ray;
+    const glm::dvec3 shift(this->fromScene[3]);
+    const glm::dmat3 linear(this->fromScene);
+    const bool inside = this->onlyShifted
+      ? enterBox(this->hierarchy->box(), ray.origin + shift, ray.direction, search.end(),
+          passage.traversal)
+      : enterBox(this->hierarchy->box(), linear * ray.origin + shift, linear * ray.direction,
+          search.end(), passage.traversal);
+    if (inside)
+    {
+      passage.sieve = SieveRay(passage.traversal, this->hierarchy->box().reach());
+      passage.sieve.end = passage.end();
+    }
+    return inside;
+  }
+};
+
+} // namespace
+
+// All placed hierarchies and, when there are several, one hierarchy over their boxes.
+class TopLevel
+{
+public:
+  // Members lie in the order of the placed hierarchies. Returns whether anything has moved.
+  bool update(Device& device, std::vector<Placed> placed, std::vector<Member> members)
+  {
+    this->Members = std::move(members);
+    const bool same = this->Parts == placed;
+    // Assigned in any case: who is seen and who casts may differ.
+    this->Parts = std::move(placed);
+    if (!same)
+    {
+      this->rebuild(device);
+    }
+    return !same;
+  }
+
+  template <unsigned int N>
+  void trace(Search* const* searches, unsigned int count, bool anyHit) const
+  {
+    Passage passages[N];
+    unsigned int mask = 0;
+    for (unsigned int i = 0; i < count; ++i)
+    {
+      if (searches[i]->exact.valid() && this->enter(*searches[i], passages[i]))
+      {
+        mask |= 1u << i;
+      }
+    }
+    if (mask == 0)
     {
       return;
     }
-    const std::lock_guard<std::mutex> lock(this->Mutex);
-    throw std::runtime_error(
-      "Embree: " + std::string(doing) + " failed" + describe(error) + " " + this->Message);
-  }
-
-private:
-  static std::string describe(RTCError error)
-  {
-    switch (error)
+    Query query(passages);
+    if (this->Parts.size() == 1)
     {
-      case RTC_ERROR_INVALID_ARGUMENT:
-        return " (invalid argument)";
-      case RTC_ERROR_INVALID_OPERATION:
-        return " (invalid operation)";
-      case RTC_ERROR_OUT_OF_MEMORY:
-        return " (out of memory)";
-      case RTC_ERROR_UNSUPPORTED_CPU:
-        return " (unsupported processor)";
-      case RTC_ERROR_CANCELLED:
-        return " (cancelled)";
-      default:
-        return " (unknown error)";
+      query.members = this->Members.data();
+      traverse(this->Parts.front().hierarchy->scene(), query, mask, anyHit);
     }
-  }
-
-  static void remember(void* self, RTCError, const char* message)
-  {
-    Device& device = *static_cast<Device*>(self);
-    const std::lock_guard<std::mutex> lock(device.Mutex);
-    device.Message = message ? message : "";
-  }
-
-  RTCDevice Handle;
-  std::mutex Mutex;
-  std::string Message;
-};
-
-// The hierarchy of one geometry's triangles, in the coordinates of its positions.
-class TriangleScene
-{
-public:
-  TriangleScene(Device& device, std::shared_ptr<const Geometry> geometry);
-  ~TriangleScene() { rtcReleaseScene(this->Scene); }
-  TriangleScene(const TriangleScene&) = delete;
-  TriangleScene& operator=(const TriangleScene&) = delete;
-
-  RTCScene scene() const { return this->Scene; }
-  const Geometry& triangles() const { return *this->Triangles; }
-  const TraversalBox& box() const { return this->Box; }
-
-private:
-  static void boundsOf(const RTCBoundsFunctionArguments* arguments);
-
-  std::shared_ptr<const Geometry> Triangles;
-  TraversalBox Box;
-  RTCScene Scene = nullptr;
-};
-
-// A placed TriangleScene.
-struct Instance
-{
-  std::shared_ptr<const TriangleScene> triangles;
-  glm::dmat4 toScene;  // from the geometry's positions
-  glm::dmat4 fromScene;
-  TraversalBox box;    // in scene coordinates
-  TriangleId firstTriangle = 0;
-  bool visibleToRays = true;
-  bool castsShadow = true;
-
-  bool operator==(const Instance& o) const
-  {
-    return triangles == o.triangles && toScene == o.toScene && firstTriangle == o.firstTriangle &&
-      visibleToRays == o.visibleToRays && castsShadow == o.castsShadow;
-  }
-};
-
-// What one ray looks for, shared by both levels of its traversal.
-struct Search
-{
-  const Ray& ray;
-  ShearedRay exact;
-  Hit best;
-  bool found = false; // for occlusion: some hit
-
-  explicit Search(const Ray& r)
-    : ray(r)
-    , exact(r.origin, r.direction)
-  {
-  }
-  double end() const { return this->best.valid() ? this->best.t : this->ray.tMaximum; }
-};
-
-// A search's passage through one hierarchy. Embree hands the context back to the callbacks, which
-// know that it belongs to a query.
-struct Query : embree::QueryContext
-{
-  Search& search;
-  TraversalRay traversal;
-  const Instance* instance = nullptr; // on the lower level
-
-  explicit Query(Search& s)
-    : search(s)
-  {
-    embree::initialize(*this);
-  }
-};
-
-template <class Arguments>
-Query& queryOf(const Arguments* arguments)
-{
-  return *static_cast<Query*>(arguments->context);
-}
-
-RTCRay traversalRay(const Query& query)
-{
-  RTCRay ray{};
-  ray.org_x = query.traversal.origin.x;
-  ray.org_y = query.traversal.origin.y;
-  ray.org_z = query.traversal.origin.z;
-  ray.dir_x = query.traversal.direction.x;
-  ray.dir_y = query.traversal.direction.y;
-  ray.dir_z = query.traversal.direction.z;
-  ray.tnear = 0.0f;
-  ray.tfar = query.traversal.end(query.search.end());
-  ray.mask = ~0u;
-  return ray;
-}
-
-void traverse(RTCScene scene, Query& query)
-{
-  RTCRayHit rayHit{};
-  rayHit.ray = traversalRay(query);
-  rayHit.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-  embree::intersect(scene, query, rayHit);
-}
-
-void traverseForAny(RTCScene scene, Query& query)
-{
-  RTCRay ray = traversalRay(query);
-  embree::occluded(scene, query, ray);
-}
-
-// Only single rays are ever traced, so that Embree's bundles have the layout of one ray.
-RTCRayHit& rayHitOf(const RTCIntersectFunctionNArguments* arguments)
-{
-  return *reinterpret_cast<RTCRayHit*>(arguments->rayhit);
-}
-
-RTCRay& rayOf(const RTCOccludedFunctionNArguments* arguments)
-{
-  return *reinterpret_cast<RTCRay*>(arguments->ray);
-}
-
-// Tells Embree that the search now ends earlier.
-void shorten(const RTCIntersectFunctionNArguments* arguments, const Query& query)
-{
-  RTCRayHit& rayHit = rayHitOf(arguments);
-  rayHit.ray.tfar = query.traversal.end(query.search.end());
-  rayHit.hit.geomID = arguments->geomID;
-  rayHit.hit.primID = arguments->primID;
-}
-
-// The exact test of the candidate triangle. The triangle that the ray leaves is no candidate.
-bool testTriangle(const Query& query, unsigned int triangle, Hit& hit)
-{
-  const Instance& instance = *query.instance;
-  const Search& search = query.search;
-  hit.triangle = instance.firstTriangle + triangle;
-  if (hit.triangle == search.ray.originTriangle)
-  {
-    return false;
-  }
-  TriangleHit exact;
-  const Corners corners =
-    sceneCorners(instance.triangles->triangles(), instance.toScene, triangle);
-  if (!search.exact.hitsTriangle(corners, search.ray.tMaximum, exact))
-  {
-    return false;
-  }
-  hit.t = exact.t;
-  hit.u = exact.u;
-  hit.v = exact.v;
-  return true;
-}
-
-void intersectTriangle(const RTCIntersectFunctionNArguments* arguments)
-{
-  Query& query = queryOf(arguments);
-  Hit hit;
-  if (!arguments->valid[0] || !testTriangle(query, arguments->primID, hit))
-  {
-    return;
-  }
-  // The order of traversal must not show: of equal hits the smallest number wins.
-  Hit& best = query.search.best;
-  if (hit.t < best.t || (hit.t == best.t && hit.triangle < best.triangle))
-  {
-    best = hit;
-    shorten(arguments, query);
-  }
-}
-
-void occludeTriangle(const RTCOccludedFunctionNArguments* arguments)
-{
-  Query& query = queryOf(arguments);
-  Hit hit;
-  if (arguments->valid[0] && testTriangle(query, arguments->primID, hit))
-  {
-    query.search.found = true;
-    rayOf(arguments).tfar = -std::numeric_limits<float>::infinity();
-  }
-}
-
-void setBounds(RTCBounds& bounds, const glm::dvec3& lower, const glm::dvec3& upper, double padding)
-{
-  bounds.lower_x = static_cast<float>(lower.x - padding);
-  bounds.lower_y = static_cast<float>(lower.y - padding);
-  bounds.lower_z = static_cast<float>(lower.z - padding);
-  bounds.upper_x = static_cast<float>(upper.x + padding);
-  bounds.upper_y = static_cast<float>(upper.y + padding);
-  bounds.upper_z = static_cast<float>(upper.z + padding);
-}
-
-void TriangleScene::boundsOf(const RTCBoundsFunctionArguments* arguments)
-{
-  const TriangleScene& self = *static_cast<const TriangleScene*>(arguments->geometryUserPtr);
-  const glm::vec3* corner = self.Triangles->positions.data() + 3 * std::size_t(arguments->primID);
-  const glm::vec3 lower = glm::min(corner[0], glm::min(corner[1], corner[2]));
-  const glm::vec3 upper = glm::max(corner[0], glm::max(corner[1], corner[2]));
-  setBounds(*arguments->bounds_o, lower, upper, self.Box.padding());
-}
-
-// A scene with one user geometry of `count` primitives.
-struct UserGeometry
-{
-  void* data;
-  std::size_t count;
-  RTCBoundsFunction bounds;
-  RTCIntersectFunctionN intersect;
-  RTCOccludedFunctionN occluded;
-};
-
-RTCScene buildScene(Device& device, const UserGeometry& primitives, const char* doing)
-{
-  const RTCScene scene = rtcNewScene(device.handle());
-  rtcSetSceneFlags(scene, RTC_SCENE_FLAG_ROBUST);
-  const RTCGeometry geometry = rtcNewGeometry(device.handle(), RTC_GEOMETRY_TYPE_USER);
-  rtcSetGeometryUserPrimitiveCount(geometry, static_cast<unsigned int>(primitives.count));
-  rtcSetGeometryUserData(geometry, primitives.data);
-  rtcSetGeometryBoundsFunction(geometry, primitives.bounds, nullptr);
-  rtcSetGeometryIntersectFunction(geometry, primitives.intersect);
-  rtcSetGeometryOccludedFunction(geometry, primitives.occluded);
-  rtcCommitGeometry(geometry);
-  rtcAttachGeometry(scene, geometry);
-  rtcReleaseGeometry(geometry);
-  rtcCommitScene(scene);
-  try
-  {
-    device.check(doing);
-  }
-  catch (...)
-  {
-    rtcReleaseScene(scene);
-    throw;
-  }
-  return scene;
-}
-
-TriangleScene::TriangleScene(Device& device, std::shared_ptr<const Geometry> geometry)
-  : Triangles(std::move(geometry))
-{
-  for (const glm::vec3& position : this->Triangles->positions)
-  {
-    this->Box.include(position);
-  }
-  this->Scene = buildScene(device,
-    { this, this->Triangles->triangleCount(), &TriangleScene::boundsOf, &intersectTriangle,
-      &occludeTriangle },
-    "building a geometry's hierarchy");
-}
-
-// The hierarchy of the placed parts.
-class InstanceScene
-{
-public:
-  InstanceScene(Device& device, std::vector<Instance> instances);
-  ~InstanceScene() { rtcReleaseScene(this->Scene); }
-  InstanceScene(const InstanceScene&) = delete;
-  InstanceScene& operator=(const InstanceScene&) = delete;
-
-  const std::vector<Instance>& instances() const { return this->Instances; }
-  const Instance& instance(std::size_t i) const { return this->Instances[i]; }
-
-  // Traces the search when the ray meets the scene's box.
-  template <class Traverse>
-  void run(Search& search, Traverse traverseScene) const
-  {
-    Query query(search);
-    if (search.exact.valid() && enterBox(this->Box, search.ray.origin, search.ray.direction,
-          search.ray.tMaximum, query.traversal))
+    else
     {
-      traverseScene(this->Scene, query);
+      traverse(this->Tree->handle(), query, mask, anyHit);
     }
   }
 
 private:
-  static void boundsOf(const RTCBoundsFunctionArguments* arguments);
+  bool enter(Search& search, Passage& passage) const
+  {
+    if (this->Parts.size() == 1)
+    {
+      return this->Parts.front().enter(search, passage);
+    }
+    passage.search = &search;
+    if (this->Parts.empty() || !enterBox(this->Box, search.ray.origin, search.ray.direction,
+                                 search.end(), passage.traversal))
+    {
+      return false;
+    }
+    passage.sieve.end = passage.end();
+    return true;
+  }
 
-  std::vector<Instance> Instances;
+  void rebuild(Device& device)
+  {
+    this->Box = TraversalBox();
+    for (const Placed& part : this->Parts)
+    {
+      this->Box.include(part.box.lower);
+      this->Box.include(part.box.upper);
+    }
+    constexpr const char* doing = "building the hierarchy of the parts";
+    if (this->Parts.size() < 2)
+    {
+      this->Tree.reset();
+    }
+    else if (this->Tree)
+    {
+      this->Tree->rebuild(device, this->Parts.size(), doing);
+    }
+    else
+    {
+      this->Tree = std::make_unique<Scene>(device,
+        UserGeometry{ this, this->Parts.size(), &TopLevel::boundsOf, &TopLevel::intersectPart,
+          &TopLevel::occludePart },
+        Scene::Kind::Static, doing);
+    }
+  }
+
+  static void boundsOf(const RTCBoundsFunctionArguments* arguments)
+  {
+    const TopLevel& self = *static_cast<const TopLevel*>(arguments->geometryUserPtr);
+    setBounds(
+      *arguments->bounds_o, self.Parts[arguments->primID].box, self.Box.padding());
+  }
+
+  // Enters a part with those of the rays that meet it, each as a passage of its own.
+  template <class Arguments>
+  static unsigned int enterPart(
+    const Arguments* arguments, const Placed& part, Query& lower, unsigned int& entered)
+  {
+    const TopLevel& self = *static_cast<const TopLevel*>(arguments->geometryUserPtr);
+    lower.members = self.Members.data() + part.firstMember;
+    entered = 0;
+    for (unsigned int i = 0; i < arguments->N; ++i)
+    {
+      if (arguments->valid[i] &&
+        part.enter(*passageOf(arguments, i).search, lower.passages[i]))
+      {
+        entered |= 1u << i;
+      }
+    }
+    return entered;
+  }
+
+  static const Placed& partOf(void* self, unsigned int i)
+  {
+    return static_cast<const TopLevel*>(self)->Parts[i];
+  }
+
+  static void intersectPart(const RTCIntersectFunctionNArguments* arguments)
+  {
+    arguments->N == 1 ? intersectPartN<1>(arguments) : intersectPartN<kPacket>(arguments);
+  }
+
+  template <unsigned int N>
+  static void intersectPartN(const RTCIntersectFunctionNArguments* arguments)
+  {
+    const Placed& part = partOf(arguments->geometryUserPtr, arguments->primID);
+    Passage passages[N];
+    Query lower(passages);
+    unsigned int entered = 0;
+    if (!part.visibleToRays || enterPart(arguments, part, lower, entered) == 0)
+    {
+      return;
+    }
+    traverse(part.hierarchy->scene(), lower, entered, false);
+    for (; entered != 0; entered &= entered - 1)
+    {
+      const unsigned int i = static_cast<unsigned int>(__builtin_ctz(entered));
+      Passage& passage = passageOf(arguments, i);
+      const float end = passage.end();
+      if (end < passage.sieve.end)
+      {
+        passage.sieve.end = end;
+        shorten(arguments, i, end);
+      }
+    }
+  }
+
+  static void occludePart(const RTCOccludedFunctionNArguments* arguments)
+  {
+    arguments->N == 1 ? occludePartN<1>(arguments) : occludePartN<kPacket>(arguments);
+  }
+
+  template <unsigned int N>
+  static void occludePartN(const RTCOccludedFunctionNArguments* arguments)
+  {
+    const Placed& part = partOf(arguments->geometryUserPtr, arguments->primID);
+    Passage passages[N];
+    Query lower(passages);
+    unsigned int entered = 0;
+    if (!part.castsShadow || enterPart(arguments, part, lower, entered) == 0)
+    {
+      return;
+    }
+    traverse(part.hierarchy->scene(), lower, entered, true);
+    for (; entered != 0; entered &= entered - 1)
+    {
+      const unsigned int i = static_cast<unsigned int>(__builtin_ctz(entered));
+      if (passages[i].search->found)
+      {
+        finish(arguments, i);
+      }
+    }
+  }
+
+  std::vector<Placed> Parts;
+  std::vector<Member> Members;
   TraversalBox Box;
-  RTCScene Scene = nullptr;
+  std::unique_ptr<Scene> Tree; // of several parts
 };
 
-template <class Arguments>
-const Instance& instanceOf(const Arguments* arguments)
+namespace
 {
-  return static_cast<const InstanceScene*>(arguments->geometryUserPtr)->instance(arguments->primID);
-}
 
-// Enters an instance: its own traversal ray, from the true ray in its coordinates.
-bool enterInstance(const Instance& instance, Query& lower)
+TraversalBox boxInScene(const TraversalBox& local, const glm::dmat4& toScene)
 {
-  const Ray& ray = lower.search.ray;
-  lower.instance = &instance;
-  const glm::dvec3 origin(instance.fromScene * glm::dvec4(ray.origin, 1.0));
-  const glm::dvec3 direction = glm::dmat3(instance.fromScene) * ray.direction;
-  return enterBox(
-    instance.triangles->box(), origin, direction, lower.search.end(), lower.traversal);
-}
-
-void intersectInstance(const RTCIntersectFunctionNArguments* arguments)
-{
-  Query& upper = queryOf(arguments);
-  const Instance& instance = instanceOf(arguments);
-  Query lower(upper.search);
-  if (!arguments->valid[0] || !instance.visibleToRays || !enterInstance(instance, lower))
-  {
-    return;
-  }
-  const TriangleId before = upper.search.best.triangle;
-  traverse(instance.triangles->scene(), lower);
-  if (upper.search.best.triangle != before)
-  {
-    shorten(arguments, upper);
-  }
-}
-
-void occludeInstance(const RTCOccludedFunctionNArguments* arguments)
-{
-  Query& upper = queryOf(arguments);
-  const Instance& instance = instanceOf(arguments);
-  Query lower(upper.search);
-  if (!arguments->valid[0] || !instance.castsShadow || !enterInstance(instance, lower))
-  {
-    return;
-  }
-  traverseForAny(instance.triangles->scene(), lower);
-  if (upper.search.found)
-  {
-    rayOf(arguments).tfar = -std::numeric_limits<float>::infinity();
-  }
-}
-
-void InstanceScene::boundsOf(const RTCBoundsFunctionArguments* arguments)
-{
-  const InstanceScene& self = *static_cast<const InstanceScene*>(arguments->geometryUserPtr);
-  const TraversalBox& box = self.Instances[arguments->primID].box;
-  setBounds(*arguments->bounds_o, box.lower, box.upper, self.Box.padding());
-}
-
-InstanceScene::InstanceScene(Device& device, std::vector<Instance> instances)
-  : Instances(std::move(instances))
-{
-  for (const Instance& instance : this->Instances)
-  {
-    this->Box.include(instance.box.lower);
-    this->Box.include(instance.box.upper);
-  }
-  this->Scene = buildScene(device,
-    { this, this->Instances.size(), &InstanceScene::boundsOf, &intersectInstance,
-      &occludeInstance },
-    "building the hierarchy of the parts");
-}
-
-Instance makeInstance(
-  const Part& part, std::shared_ptr<const TriangleScene> triangles, const glm::dvec3& sceneOrigin)
-{
-  Instance instance;
-  instance.triangles = std::move(triangles);
-  instance.toScene = positionsToScene(part, sceneOrigin);
-  instance.fromScene = glm::inverse(instance.toScene);
-  instance.firstTriangle = part.firstTriangle;
-  instance.visibleToRays = part.visibleToRays;
-  instance.castsShadow = part.castsShadow;
-  const TraversalBox& local = instance.triangles->box();
+  TraversalBox box;
   for (int corner = 0; corner < 8; ++corner)
   {
     const glm::dvec4 point((corner & 1) ? local.upper.x : local.lower.x,
       (corner & 2) ? local.upper.y : local.lower.y, (corner & 4) ? local.upper.z : local.lower.z,
       1.0);
-    instance.box.include(glm::dvec3(instance.toScene * point));
+    box.include(glm::dvec3(toScene * point));
   }
-  return instance;
+  return box;
 }
 
-bool meetsRays(const Part& part)
+// The triangles of one geometry in its own coordinates.
+std::vector<SourceTriangle> localTriangles(const Geometry& geometry)
 {
-  return part.geometry->triangleCount() > 0 && (part.visibleToRays || part.castsShadow);
+  std::vector<SourceTriangle> triangles(geometry.triangleCount());
+  for (std::size_t i = 0; i < triangles.size(); ++i)
+  {
+    const glm::vec3* const corner = geometry.positions.data() + 3 * i;
+    triangles[i] = { { corner[0], corner[1], corner[2] },
+      { 0, static_cast<std::uint32_t>(i), { corner[0], corner[1], corner[2] } } };
+  }
+  return triangles;
+}
+
+// Many parts in one hierarchy, in world coordinates relative to `anchor`: the scene's origin when it
+// was built, which later snapshots are free to leave.
+struct MergedHierarchy
+{
+  std::shared_ptr<const Hierarchy> hierarchy; // null: nothing merged
+  glm::dvec3 anchor{ 0.0 };
+  std::vector<std::size_t> parts; // of the last snapshot, in the order of the members; or kNewPart
+
+  void build(Device& device, const Snapshot& snapshot, const Grouping& grouping, Place place)
+  {
+    this->anchor = snapshot.origin;
+    this->parts.clear();
+    std::vector<SourceTriangle> triangles;
+    for (std::size_t i = 0; i < snapshot.parts.size(); ++i)
+    {
+      if (grouping.parts[i].place == place)
+      {
+        this->add(snapshot.parts[i], triangles);
+        this->parts.push_back(i);
+      }
+    }
+    this->hierarchy = triangles.empty()
+      ? nullptr
+      : std::make_shared<const Hierarchy>(device, triangles, Scene::Kind::Static);
+  }
+
+  // The members' numbers in a later snapshot; those that have left get none.
+  void follow(const Grouping& grouping, Place place, std::size_t earlierCount)
+  {
+    std::vector<std::size_t> now(earlierCount, kNewPart);
+    for (std::size_t i = 0; i < grouping.parts.size(); ++i)
+    {
+      const GroupedPart& part = grouping.parts[i];
+      if (part.before != kNewPart && part.place == place)
+      {
+        now[part.before] = i;
+      }
+    }
+    for (std::size_t& part : this->parts)
+    {
+      part = part == kNewPart ? kNewPart : now[part];
+    }
+  }
+
+private:
+  void add(const Part& part, std::vector<SourceTriangle>& triangles) const
+  {
+    const glm::dmat4 toAnchor = positionsToScene(part, this->anchor);
+    const std::uint32_t member = static_cast<std::uint32_t>(this->parts.size());
+    for (std::size_t i = 0; i < part.geometry->triangleCount(); ++i)
+    {
+      const Corners c = sceneCorners(*part.geometry, toAnchor, i);
+      const glm::vec3* const corner = part.geometry->positions.data() + 3 * i;
+      triangles.push_back({ { glm::vec3(c.a), glm::vec3(c.b), glm::vec3(c.c) },
+        { member, static_cast<std::uint32_t>(i), { corner[0], corner[1], corner[2] } } });
+    }
+  }
+};
+
+Member memberOf(const Part& part, const glm::dvec3& sceneOrigin)
+{
+  return { positionsToScene(part, sceneOrigin), part.firstTriangle, part.visibleToRays,
+    part.castsShadow };
 }
 
 } // namespace
+} // namespace embree
 
 struct EmbreeStructure::Implementation
 {
-  using TriangleScenes = std::unordered_map<std::uint64_t, std::shared_ptr<const TriangleScene>>;
+  struct Own // a geometry's hierarchy
+  {
+    std::shared_ptr<embree::Hierarchy> hierarchy;
+    bool refittable = false;
+  };
+  using Owns = std::unordered_map<std::uint64_t, Own>; // by Geometry::version
 
   // The device outlives the scenes: members are destroyed from the last to the first.
-  Device device;
-  TriangleScenes triangleScenes; // by Geometry::version
-  std::unique_ptr<const InstanceScene> parts; // null: nothing to hit
+  embree::Device device;
+  Grouping grouping; // of the last update
+  embree::MergedHierarchy merged, flat;
+  Owns owns;
+  std::unique_ptr<embree::TopLevel> top = std::make_unique<embree::TopLevel>();
 
   explicit Implementation(const std::string& configuration)
     : device(configuration)
   {
   }
 
-  // Finds the hierarchy of a geometry among those of this update, takes it over from the last one,
-  // or builds it.
-  std::shared_ptr<const TriangleScene> trianglesOf(
-    const Part& part, TriangleScenes& current, StructureReport& report)
+  void clear()
   {
-    std::shared_ptr<const TriangleScene>& triangles = current[part.geometry->version];
-    if (triangles)
+    this->top = std::make_unique<embree::TopLevel>();
+    this->grouping = Grouping();
+    this->merged = this->flat = embree::MergedHierarchy();
+    this->owns.clear();
+  }
+
+  void updateMerged(embree::MergedHierarchy& hierarchy, bool anew, Place place,
+    const Snapshot& snapshot, const Grouping& now, StructureReport& report)
+  {
+    if (anew)
     {
-      return triangles;
+      hierarchy.build(this->device, snapshot, now, place);
+      report.built += hierarchy.hierarchy != nullptr;
+      return;
     }
-    const auto known = this->triangleScenes.find(part.geometry->version);
-    if (known != this->triangleScenes.end())
+    hierarchy.follow(now, place, this->grouping.parts.size());
+    report.reused += hierarchy.hierarchy != nullptr;
+  }
+
+  // Refits the hierarchy that the part had in the last update, if nobody else wants it as it is.
+  bool refitOwn(const Part& part, const GroupedPart& grouped, Owns& current)
+  {
+    const std::uint64_t earlier =
+      grouped.before == kNewPart ? 0 : this->grouping.parts[grouped.before].version;
+    const auto old = this->owns.find(earlier);
+    if (!grouped.deformed || old == this->owns.end() || !old->second.refittable ||
+      current.count(earlier) != 0)
     {
-      ++report.reused;
-      return triangles = known->second;
+      return false;
     }
-    ++report.built;
-    return triangles = std::make_shared<TriangleScene>(this->device, part.geometry);
+    const Own own = old->second;
+    this->owns.erase(old);
+    if (!own.hierarchy->refit(this->device, part.geometry->positions))
+    {
+      return false;
+    }
+    current[part.geometry->version] = own;
+    return true;
+  }
+
+  // The hierarchies of the parts that stand alone: taken over, refitted, or built.
+  void updateOwns(const Snapshot& snapshot, const Grouping& now, StructureReport& report)
+  {
+    Owns current;
+    const auto forEachMissing = [&](auto action) {
+      for (std::size_t i = 0; i < snapshot.parts.size(); ++i)
+      {
+        const std::uint64_t version = snapshot.parts[i].geometry->version;
+        if (now.parts[i].place == Place::Alone && current.count(version) == 0)
+        {
+          action(snapshot.parts[i], now.parts[i], version);
+        }
+      }
+    };
+    forEachMissing([&](const Part&, const GroupedPart&, std::uint64_t version) {
+      const auto known = this->owns.find(version);
+      if (known != this->owns.end())
+      {
+        current.insert(*known);
+        ++report.reused;
+      }
+    });
+    forEachMissing([&](const Part& part, const GroupedPart& grouped, std::uint64_t version) {
+      if (this->refitOwn(part, grouped, current))
+      {
+        ++report.refitted;
+        return;
+      }
+      // What has deformed once will do so again.
+      current[version] = { std::make_shared<embree::Hierarchy>(this->device,
+                             embree::localTriangles(*part.geometry),
+                             grouped.deformed ? embree::Scene::Kind::Refittable
+                                              : embree::Scene::Kind::Static),
+        grouped.deformed };
+      ++report.built;
+    });
+    this->owns.swap(current);
+  }
+
+  bool updateTop(const Snapshot& snapshot, const Grouping& now)
+  {
+    std::vector<embree::Placed> placed;
+    std::vector<embree::Member> members;
+    this->placeMerged(this->merged, snapshot, placed, members);
+    this->placeMerged(this->flat, snapshot, placed, members);
+    for (std::size_t i = 0; i < snapshot.parts.size(); ++i)
+    {
+      if (now.parts[i].place == Place::Alone)
+      {
+        this->placeOwn(snapshot.parts[i], snapshot.origin, placed, members);
+      }
+    }
+    return this->top->update(this->device, std::move(placed), std::move(members));
+  }
+
+  void addMember(embree::Placed& placed, const Part& part, const glm::dvec3& origin,
+    std::vector<embree::Member>& members)
+  {
+    members.push_back(embree::memberOf(part, origin));
+    placed.visibleToRays = placed.visibleToRays || part.visibleToRays;
+    placed.castsShadow = placed.castsShadow || part.castsShadow;
+  }
+
+  void placeMerged(const embree::MergedHierarchy& hierarchy, const Snapshot& snapshot,
+    std::vector<embree::Placed>& placed, std::vector<embree::Member>& members)
+  {
+    embree::Placed result;
+    result.firstMember = members.size();
+    for (const std::size_t part : hierarchy.parts)
+    {
+      if (part == kNewPart)
+      {
+        members.emplace_back();
+      }
+      else
+      {
+        this->addMember(result, snapshot.parts[part], snapshot.origin, members);
+      }
+    }
+    if (!result.visibleToRays && !result.castsShadow)
+    {
+      members.resize(result.firstMember);
+      return;
+    }
+    const glm::dvec3 shift = snapshot.origin - hierarchy.anchor;
+    result.hierarchy = hierarchy.hierarchy;
+    result.fromScene[3] = glm::dvec4(shift, 1.0);
+    result.onlyShifted = true;
+    result.box.include(hierarchy.hierarchy->box().lower - shift);
+    result.box.include(hierarchy.hierarchy->box().upper - shift);
+    placed.push_back(std::move(result));
+  }
+
+  void placeOwn(const Part& part, const glm::dvec3& origin,
+    std::vector<embree::Placed>& placed, std::vector<embree::Member>& members)
+  {
+    embree::Placed result;
+    result.firstMember = members.size();
+    this->addMember(result, part, origin, members);
+    const glm::dmat4& toScene = members.back().toScene;
+    result.hierarchy = this->owns.at(part.geometry->version).hierarchy;
+    result.fromScene = glm::inverse(toScene);
+    result.onlyShifted = glm::dmat3(result.fromScene) == glm::dmat3(1.0);
+    result.box = embree::boxInScene(result.hierarchy->box(), toScene);
+    placed.push_back(std::move(result));
   }
 };
 
@@ -514,27 +601,21 @@ StructureReport EmbreeStructure::update(const Snapshot& snapshot)
 {
   const auto started = std::chrono::steady_clock::now();
   StructureReport report;
-  Implementation::TriangleScenes current;
-  std::vector<Instance> instances;
-  for (const Part& part : snapshot.parts)
+  try
   {
-    if (meetsRays(part))
-    {
-      instances.push_back(makeInstance(
-        part, this->Impl->trianglesOf(part, current, report), snapshot.origin));
-    }
+    Grouping now = groupParts(snapshot, this->Impl->grouping);
+    Implementation& impl = *this->Impl;
+    impl.updateMerged(impl.merged, now.mergedAnew, Place::Merged, snapshot, now, report);
+    impl.updateMerged(impl.flat, now.flatAnew, Place::Flat, snapshot, now, report);
+    impl.updateOwns(snapshot, now, report);
+    report.partsRebuilt = impl.updateTop(snapshot, now);
+    impl.grouping = std::move(now);
   }
-  const bool same =
-    this->Impl->parts ? this->Impl->parts->instances() == instances : instances.empty();
-  if (!same)
+  catch (...)
   {
-    // Built before the old one is dropped: an error leaves the structure as it was.
-    this->Impl->parts = instances.empty()
-      ? nullptr
-      : std::make_unique<const InstanceScene>(this->Impl->device, std::move(instances));
-    report.partsRebuilt = true;
+    this->Impl->clear();
+    throw;
   }
-  this->Impl->triangleScenes.swap(current);
   report.milliseconds =
     std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - started).count();
   return report;
@@ -542,22 +623,70 @@ StructureReport EmbreeStructure::update(const Snapshot& snapshot)
 
 Hit EmbreeStructure::intersect(const Ray& ray) const
 {
-  Search search(ray);
-  if (this->Impl->parts)
-  {
-    this->Impl->parts->run(search, traverse);
-  }
+  embree::Search search(ray);
+  embree::Search* const only = &search;
+  this->Impl->top->trace<1>(&only, 1, false);
   return search.best;
 }
 
 bool EmbreeStructure::occluded(const Ray& ray) const
 {
-  Search search(ray);
-  if (this->Impl->parts)
-  {
-    this->Impl->parts->run(search, traverseForAny);
-  }
+  embree::Search search(ray);
+  embree::Search* const only = &search;
+  this->Impl->top->trace<1>(&only, 1, true);
   return search.found;
+}
+
+namespace
+{
+
+// The rays of a stream in packets: `take(search, i)` gets every ray's result.
+template <class Take>
+void tracePackets(
+  const embree::TopLevel& top, const Ray* rays, std::size_t count, bool anyHit, Take take)
+{
+  for (std::size_t first = 0; first < count; first += embree::kPacket)
+  {
+    const unsigned int n =
+      static_cast<unsigned int>(std::min<std::size_t>(embree::kPacket, count - first));
+    std::optional<embree::Search> searches[embree::kPacket];
+    embree::Search* pointers[embree::kPacket];
+    for (unsigned int i = 0; i < n; ++i)
+    {
+      pointers[i] = &searches[i].emplace(rays[first + i]);
+    }
+    top.trace<embree::kPacket>(pointers, n, anyHit);
+    for (unsigned int i = 0; i < n; ++i)
+    {
+      take(*pointers[i], first + i);
+    }
+  }
+}
+
+} // namespace
+
+void EmbreeStructure::intersect(
+  const Ray* rays, Hit* hits, std::size_t count, RayOrder order) const
+{
+  if (order == RayOrder::Incoherent)
+  {
+    Structure::intersect(rays, hits, count, order);
+    return;
+  }
+  tracePackets(*this->Impl->top, rays, count, false,
+    [hits](const embree::Search& search, std::size_t i) { hits[i] = search.best; });
+}
+
+void EmbreeStructure::occluded(
+  const Ray* rays, std::uint8_t* occluded, std::size_t count, RayOrder order) const
+{
+  if (order == RayOrder::Incoherent)
+  {
+    Structure::occluded(rays, occluded, count, order);
+    return;
+  }
+  tracePackets(*this->Impl->top, rays, count, true,
+    [occluded](const embree::Search& search, std::size_t i) { occluded[i] = search.found; });
 }
 
 } // namespace hrt

@@ -36,6 +36,10 @@ public:
   StructureReport update(const Snapshot& snapshot) override;
   Hit intersect(const Ray& ray) const override;
   bool occluded(const Ray& ray) const override;
+  // Coherent rays are traversed in packets of 16.
+  void intersect(const Ray* rays, Hit* hits, std::size_t count, RayOrder order) const override;
+  void occluded(const Ray* rays, std::uint8_t* occluded, std::size_t count,
+    RayOrder order) const override;
 
 private:
   struct Implementation;

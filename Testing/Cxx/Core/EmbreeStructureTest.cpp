@@ -1,6 +1,6 @@
 // The Embree structure against a loop over all triangles: same triangle, same t, u, v, bit by bit.
 #include "Rendering/Core/Structures/EmbreeStructure.h"
-#include "Scenes.h"
+#include "StructureChecks.h"
 
 #include <gtest/gtest.h>
 
@@ -48,37 +48,6 @@ Snapshot placedTori(const glm::dvec3& centre)
   return s;
 }
 
-bool same(const Hit& a, const Hit& b)
-{
-  return a.triangle == b.triangle && a.t == b.t && a.u == b.u && a.v == b.v;
-}
-
-glm::dvec3 randomCorner(const Snapshot& s, Random& random)
-{
-  const TriangleId id = static_cast<TriangleId>(random.below(s.triangleCount));
-  const Part& part = s.parts[s.partOf(id)];
-  const Corners c =
-    sceneCorners(*part.geometry, positionsToScene(part, s.origin), id - part.firstTriangle);
-  return random.below(2) ? c.a : 0.5 * (c.a + c.b); // a vertex, or the middle of an edge
-}
-
-// Half of the rays at random, half at vertices and edges, where single precision fails.
-Ray randomRay(const Snapshot& s, Random& random, int i)
-{
-  Ray ray;
-  ray.origin = random.inBox(3.0);
-  ray.direction = i % 2 ? randomCorner(s, random) - ray.origin : random.direction();
-  if (i % 3 == 0)
-  {
-    ray.tMaximum = random(0.0, 4.0);
-  }
-  if (i % 5 == 0)
-  {
-    ray.originTriangle = static_cast<TriangleId>(random.below(s.triangleCount));
-  }
-  return ray;
-}
-
 void expectEqualToBruteForce(const Snapshot& s, int rays, const char* configuration = "")
 {
   EmbreeStructure embree{ configuration };
@@ -89,10 +58,10 @@ void expectEqualToBruteForce(const Snapshot& s, int rays, const char* configurat
   int hits = 0, misses = 0, wrong = 0, wrongOcclusion = 0;
   for (int i = 0; i < rays; ++i)
   {
-    const Ray ray = randomRay(s, random, i);
+    const Ray ray = checks::randomRay(s, random, i);
     const Hit expected = reference.intersect(ray);
     ++(expected.valid() ? hits : misses);
-    wrong += !same(embree.intersect(ray), expected);
+    wrong += !checks::same(embree.intersect(ray), expected);
     wrongOcclusion += embree.occluded(ray) != reference.occluded(ray);
   }
   EXPECT_EQ(wrong, 0);
@@ -141,7 +110,7 @@ TEST(EmbreeStructure, NothingLeaksOutOfAClosedMesh)
     {
       Ray ray;
       ray.origin = random.inBox(0.5);
-      ray.direction = i % 4 ? randomCorner(s, random) - ray.origin : random.direction();
+      ray.direction = i % 4 ? checks::randomCorner(s, random) - ray.origin : random.direction();
       leaks += !embree.intersect(ray).valid();
     }
     EXPECT_EQ(leaks, 0);
@@ -213,34 +182,6 @@ TEST(EmbreeStructure, EmptyScenesAndUnusableRaysAreMisses)
   }
   ray.direction = glm::dvec3(0.0);
   EXPECT_FALSE(embree.intersect(ray).valid());
-}
-
-TEST(EmbreeStructure, BuildsOnlyWhatIsNew)
-{
-  const auto ball = scenes::sphere(16, 8), ring = scenes::torus(16, 8, 1, 0.3);
-  Snapshot s;
-  scenes::addPart(s, ball);
-  scenes::addPart(s, ball, glm::translate(glm::dmat4(1.0), { 5, 0, 0 }));
-  scenes::addPart(s, ring);
-  EmbreeStructure embree;
-  const auto expectReport = [&](std::uint64_t built, std::uint64_t reused, bool parts) {
-    const StructureReport report = embree.update(s);
-    EXPECT_EQ(report.built, built);
-    EXPECT_EQ(report.reused, reused);
-    EXPECT_EQ(report.refitted, 0u);
-    EXPECT_EQ(report.partsRebuilt, parts);
-  };
-  expectReport(2, 0, true);  // two geometries, three parts
-  expectReport(0, 2, false); // nothing new
-  s.parts[1].localToWorld[3][0] = 7;
-  expectReport(0, 2, true); // a part moved
-  s.parts[2].geometry = scenes::torus(16, 8, 1, 0.2);
-  expectReport(1, 1, true); // a mesh changed
-  s.parts.resize(2);
-  expectReport(0, 1, true); // a part left
-  Ray ray;
-  ray.origin = { 7.1, 0.1, 3 };
-  EXPECT_TRUE(embree.intersect(ray).valid()); // where the moved part is now
 }
 
 TEST(EmbreeStructure, LeavesFloatingPointModesAlone)

@@ -1,0 +1,414 @@
+// Implements the hierarchy: clustering by Embree's generic builder, bounds, refitting, and the
+// callbacks that meet a block. The callbacks exist twice, for the compiler's target and for AVX2;
+// which one runs changes the time and nothing else.
+#include "Rendering/Core/Structures/EmbreeHierarchy.h"
+
+#include "Rendering/Core/Structures/Grouping.h"
+
+#include <algorithm>
+#include <stdexcept>
+
+namespace hrt
+{
+namespace embree
+{
+
+namespace
+{
+
+constexpr int kLanes = TriangleBlock::kLanes;
+
+// Far beyond what the builder's own cost allows; it splits evenly in the last levels before it, and
+// fails when they do not suffice.
+constexpr unsigned int kDeepest = 512;
+
+bool testLane(const Search& search, const Member& member, const Source& source, Hit& hit)
+{
+  hit.triangle = member.firstTriangle + source.triangle;
+  if (hit.triangle == search.ray.originTriangle)
+  {
+    return false;
+  }
+  TriangleHit exact;
+  const Corners corners = sceneCorners(source.position, member.toScene);
+  if (!search.exact.hitsTriangle(corners, search.ray.tMaximum, exact))
+  {
+    return false;
+  }
+  hit.t = exact.t;
+  hit.u = exact.u;
+  hit.v = exact.v;
+  return true;
+}
+
+int takeLowest(unsigned int& mask)
+{
+  const int lowest = __builtin_ctz(mask);
+  mask &= mask - 1;
+  return lowest;
+}
+
+// True when one of the lanes is the nearest hit now. The order of traversal must not show: of equal
+// hits the smallest number wins.
+bool intersectLanes(
+  const Source* sources, unsigned int lanes, const Member* members, Search& search)
+{
+  bool nearer = false;
+  while (lanes != 0)
+  {
+    const Source& source = sources[takeLowest(lanes)];
+    if (source.member == kNoMember || !members[source.member].visibleToRays)
+    {
+      continue;
+    }
+    Hit hit, &best = search.best;
+    if (testLane(search, members[source.member], source, hit) &&
+      (hit.t < best.t || (hit.t == best.t && hit.triangle < best.triangle)))
+    {
+      best = hit;
+      nearer = true;
+    }
+  }
+  return nearer;
+}
+
+bool occludeLanes(const Source* sources, const SieveResult& lanes, const Member* members,
+  const Search& search)
+{
+  unsigned int possible = lanes.possible;
+  while (possible != 0)
+  {
+    const int lane = takeLowest(possible);
+    const Source& source = sources[lane];
+    if (source.member == kNoMember || !members[source.member].castsShadow)
+    {
+      continue;
+    }
+    const Member& member = members[source.member];
+    const bool sure = (lanes.sure >> lane & 1u) != 0 &&
+      member.firstTriangle + source.triangle != search.ray.originTriangle;
+    Hit hit;
+    if (sure || testLane(search, member, source, hit))
+    {
+      return true;
+    }
+  }
+  return false;
+}
+
+float surfaceArea(const glm::vec3& lower, const glm::vec3& upper)
+{
+  const glm::vec3 d = upper - lower;
+  return d.x * d.y + d.y * d.z + d.z * d.x;
+}
+
+struct Bounds
+{
+  glm::vec3 lower{ std::numeric_limits<float>::infinity() };
+  glm::vec3 upper{ -std::numeric_limits<float>::infinity() };
+
+  void include(const Bounds& o)
+  {
+    this->lower = glm::min(this->lower, o.lower);
+    this->upper = glm::max(this->upper, o.upper);
+  }
+};
+
+// Of the block's triangles; unused lanes repeat a used one.
+Bounds boundsOfBlock(const TriangleBlock& block)
+{
+  Bounds bounds;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    for (int corner = 0; corner < 3; ++corner)
+    {
+      for (int lane = 0; lane < kLanes; ++lane)
+      {
+        const float x = block.corner[corner][axis][lane];
+        bounds.lower[axis] = std::min(bounds.lower[axis], x);
+        bounds.upper[axis] = std::max(bounds.upper[axis], x);
+      }
+    }
+  }
+  return bounds;
+}
+
+} // namespace
+
+struct BlockCallbacks
+{
+  HRT_ALWAYS_INLINE static void intersect(const RTCIntersectFunctionNArguments* arguments)
+  {
+    const Hierarchy& self = *static_cast<const Hierarchy*>(arguments->geometryUserPtr);
+    const TriangleBlock& block = self.Blocks[arguments->primID];
+    const Source* const sources = &self.Sources[std::size_t(arguments->primID) * kLanes];
+    Query& query = queryOf(arguments);
+    const unsigned int count = arguments->N;
+    for (unsigned int i = 0; i < count; ++i)
+    {
+      if (!arguments->valid[i])
+      {
+        continue;
+      }
+      Passage& passage = passageOf(arguments, i);
+      const unsigned int lanes = sieve(block, passage.sieve).possible;
+      if (lanes != 0 && intersectLanes(sources, lanes, query.members, *passage.search))
+      {
+        passage.sieve.end = passage.end();
+        shorten(arguments, i, passage.sieve.end);
+      }
+    }
+  }
+
+  HRT_ALWAYS_INLINE static void occlude(const RTCOccludedFunctionNArguments* arguments)
+  {
+    const Hierarchy& self = *static_cast<const Hierarchy*>(arguments->geometryUserPtr);
+    const TriangleBlock& block = self.Blocks[arguments->primID];
+    const Source* const sources = &self.Sources[std::size_t(arguments->primID) * kLanes];
+    Query& query = queryOf(arguments);
+    const unsigned int count = arguments->N;
+    for (unsigned int i = 0; i < count; ++i)
+    {
+      if (!arguments->valid[i])
+      {
+        continue;
+      }
+      Passage& passage = passageOf(arguments, i);
+      const SieveResult lanes = sieve(block, passage.sieve);
+      if (lanes.possible != 0 && occludeLanes(sources, lanes, query.members, *passage.search))
+      {
+        passage.search->found = true;
+        finish(arguments, i);
+      }
+    }
+  }
+};
+
+namespace
+{
+
+void intersectBlock(const RTCIntersectFunctionNArguments* arguments)
+{
+  BlockCallbacks::intersect(arguments);
+}
+
+void occludeBlock(const RTCOccludedFunctionNArguments* arguments)
+{
+  BlockCallbacks::occlude(arguments);
+}
+
+#if defined(__GNUC__) && defined(__x86_64__)
+__attribute__((target("avx2,fma"))) void intersectBlockWide(
+  const RTCIntersectFunctionNArguments* arguments)
+{
+  BlockCallbacks::intersect(arguments);
+}
+
+__attribute__((target("avx2,fma"))) void occludeBlockWide(
+  const RTCOccludedFunctionNArguments* arguments)
+{
+  BlockCallbacks::occlude(arguments);
+}
+#else
+constexpr RTCIntersectFunctionN intersectBlockWide = &intersectBlock;
+constexpr RTCOccludedFunctionN occludeBlockWide = &occludeBlock;
+#endif
+
+} // namespace
+
+// Clusters triangles by Embree's surface area heuristic, in a tree of which every leaf is a block.
+struct Hierarchy::Builder
+{
+  struct Cluster
+  {
+    Cluster* child[2] = { nullptr, nullptr };
+    std::uint32_t count = 0; // of a leaf's triangles
+    std::uint32_t triangle[kLanes];
+  };
+
+  Hierarchy& Self;
+  const std::vector<SourceTriangle>& Triangles;
+
+  static void* createNode(RTCThreadLocalAllocator allocator, unsigned int, void*)
+  {
+    return new (rtcThreadLocalAlloc(allocator, sizeof(Cluster), alignof(Cluster))) Cluster;
+  }
+  static void setChildren(void* node, void** children, unsigned int count, void*)
+  {
+    for (unsigned int i = 0; i < count; ++i)
+    {
+      static_cast<Cluster*>(node)->child[i] = static_cast<Cluster*>(children[i]);
+    }
+  }
+  static void setBounds(void*, const RTCBounds**, unsigned int, void*) {}
+  static void* createLeaf(RTCThreadLocalAllocator allocator, const RTCBuildPrimitive* primitives,
+    std::size_t count, void*)
+  {
+    Cluster* const leaf =
+      new (rtcThreadLocalAlloc(allocator, sizeof(Cluster), alignof(Cluster))) Cluster;
+    leaf->count = static_cast<std::uint32_t>(count);
+    for (std::size_t i = 0; i < count; ++i)
+    {
+      leaf->triangle[i] = primitives[i].primID;
+    }
+    return leaf;
+  }
+
+  std::vector<RTCBuildPrimitive> primitives() const
+  {
+    std::vector<RTCBuildPrimitive> result(this->Triangles.size());
+    for (std::size_t i = 0; i < result.size(); ++i)
+    {
+      const std::array<glm::vec3, 3>& c = this->Triangles[i].corner;
+      const glm::vec3 lower = glm::min(c[0], glm::min(c[1], c[2]));
+      const glm::vec3 upper = glm::max(c[0], glm::max(c[1], c[2]));
+      result[i] = { lower.x, lower.y, lower.z, 0, upper.x, upper.y, upper.z,
+        static_cast<unsigned int>(i) };
+    }
+    return result;
+  }
+
+  void run(Device& device)
+  {
+    std::vector<RTCBuildPrimitive> boxes = this->primitives();
+    RTCBuildArguments arguments = rtcDefaultBuildArguments();
+    arguments.maxDepth = kDeepest;
+    arguments.sahBlockSize = kLanes;
+    arguments.maxLeafSize = kLanes;
+    const RTCBVH tree = rtcNewBVH(device.handle());
+    arguments.bvh = tree;
+    arguments.primitives = boxes.data();
+    arguments.primitiveCount = boxes.size();
+    arguments.primitiveArrayCapacity = boxes.size();
+    arguments.createNode = &Builder::createNode;
+    arguments.setNodeChildren = &Builder::setChildren;
+    arguments.setNodeBounds = &Builder::setBounds;
+    arguments.createLeaf = &Builder::createLeaf;
+    const Cluster* const root = static_cast<const Cluster*>(rtcBuildBVH(&arguments));
+    if (root)
+    {
+      this->take(*root);
+    }
+    rtcReleaseBVH(tree);
+    device.check("clustering triangles");
+  }
+
+  std::uint32_t take(const Cluster& cluster)
+  {
+    if (cluster.count > 0)
+    {
+      return ~this->takeLeaf(cluster);
+    }
+    const std::uint32_t first = this->take(*cluster.child[0]);
+    const std::uint32_t second = this->take(*cluster.child[1]);
+    this->Self.Nodes.push_back({ { first, second } });
+    return static_cast<std::uint32_t>(this->Self.Nodes.size() - 1);
+  }
+
+  std::uint32_t takeLeaf(const Cluster& leaf)
+  {
+    const std::size_t block = this->Self.Blocks.size();
+    this->Self.Blocks.emplace_back();
+    for (int lane = 0; lane < kLanes; ++lane)
+    {
+      const bool used = std::uint32_t(lane) < leaf.count;
+      const SourceTriangle& triangle = this->Triangles[leaf.triangle[used ? lane : 0]];
+      this->Self.setLane(block, lane, triangle.corner);
+      this->Self.Sources.push_back(triangle.source);
+      if (!used)
+      {
+        this->Self.Sources.back().member = kNoMember;
+      }
+    }
+    return static_cast<std::uint32_t>(block);
+  }
+};
+
+Hierarchy::Hierarchy(
+  Device& device, const std::vector<SourceTriangle>& triangles, Scene::Kind kind)
+{
+  for (const SourceTriangle& triangle : triangles)
+  {
+    for (const glm::vec3& corner : triangle.corner)
+    {
+      this->Box.include(corner);
+    }
+  }
+  this->Padding = this->Box.padding();
+  Builder{ *this, triangles }.run(device);
+  this->CostWhenBuilt = this->cost();
+  UserGeometry primitives;
+  primitives.data = this;
+  primitives.count = this->Blocks.size();
+  primitives.bounds = &Hierarchy::boundsOf;
+  primitives.intersect = device.wide() ? &*intersectBlockWide : &intersectBlock;
+  primitives.occluded = device.wide() ? &*occludeBlockWide : &occludeBlock;
+  this->Tree =
+    std::make_unique<Scene>(device, primitives, kind, "building a geometry's hierarchy");
+}
+
+void Hierarchy::setLane(std::size_t block, int lane, const std::array<glm::vec3, 3>& corner)
+{
+  for (int i = 0; i < 3; ++i)
+  {
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      this->Blocks[block].corner[i][axis][lane] = corner[i][axis];
+    }
+  }
+}
+
+bool Hierarchy::refit(Device& device, const std::vector<glm::vec3>& positions)
+{
+  this->Box = TraversalBox();
+  for (const glm::vec3& position : positions)
+  {
+    this->Box.include(position);
+  }
+  this->Padding = this->Box.padding();
+  for (std::size_t i = 0; i < this->Sources.size(); ++i)
+  {
+    const glm::vec3* const corner = &positions[3 * std::size_t(this->Sources[i].triangle)];
+    this->setLane(i / kLanes, static_cast<int>(i % kLanes), { corner[0], corner[1], corner[2] });
+    std::copy_n(corner, 3, this->Sources[i].position);
+  }
+  if (this->cost() > kWorstDecay * this->CostWhenBuilt)
+  {
+    return false;
+  }
+  this->Tree->refit(device);
+  return true;
+}
+
+// How many nodes and blocks a ray that meets the root is expected to meet: the surface area
+// heuristic's measure, on the tree of the clusters, which Embree's own resembles.
+double Hierarchy::cost() const
+{
+  std::vector<Bounds> bounds(this->Nodes.size());
+  const auto boundsOfChild = [&](std::uint32_t child) {
+    return child < bounds.size() ? bounds[child] : boundsOfBlock(this->Blocks[~child]);
+  };
+  double areas = 0.0;
+  for (std::size_t i = 0; i < this->Nodes.size(); ++i)
+  {
+    for (const std::uint32_t child : this->Nodes[i].child)
+    {
+      const Bounds box = boundsOfChild(child);
+      areas += surfaceArea(box.lower, box.upper);
+      bounds[i].include(box);
+    }
+  }
+  const double root =
+    bounds.empty() ? 0.0 : surfaceArea(bounds.back().lower, bounds.back().upper);
+  return root > 0.0 ? areas / root : 1.0;
+}
+
+void Hierarchy::boundsOf(const RTCBoundsFunctionArguments* arguments)
+{
+  const Hierarchy& self = *static_cast<const Hierarchy*>(arguments->geometryUserPtr);
+  const Bounds box = boundsOfBlock(self.Blocks[arguments->primID]);
+  setBounds(*arguments->bounds_o, { box.lower, box.upper }, self.Padding);
+}
+
+} // namespace embree
+} // namespace hrt

@@ -1,0 +1,106 @@
+// Packets of rays through the Embree structure answer as single rays do, bit by bit: of any fill, on
+// any instruction set, through one level and through two.
+#include "Rendering/Core/Structures/EmbreeStructure.h"
+#include "StructureChecks.h"
+
+#include <gtest/gtest.h>
+
+namespace
+{
+
+using namespace hrt;
+using scenes::Random;
+
+// One level: everything merged. Two: some parts have moved since.
+Snapshot scene(EmbreeStructure& embree, bool twoLevels)
+{
+  Snapshot s;
+  scenes::addPart(s, scenes::torus(48, 24, 1.5, 0.5));
+  for (int i = 0; i < 6; ++i)
+  {
+    scenes::addPart(s, scenes::sphere(16, 8), glm::scale(glm::translate(glm::dmat4(1.0),
+      { 0.5 * i - 1.5, 0.1 * i, 0.2 * i }), glm::dvec3(0.5)));
+  }
+  embree.update(s);
+  if (twoLevels)
+  {
+    for (int i = 1; i < 5; ++i)
+    {
+      s.parts[i].localToWorld[3][1] += 0.2;
+    }
+    s.parts[2].castsShadow = false;
+    s.parts[3].visibleToRays = false;
+    embree.update(s);
+  }
+  return s;
+}
+
+class EmbreePacket : public ::testing::TestWithParam<const char*>
+{
+};
+
+TEST_P(EmbreePacket, OfAnyFillEqualsBruteForce)
+{
+  for (bool twoLevels : { false, true })
+  {
+    EmbreeStructure embree(GetParam());
+    const Snapshot s = scene(embree, twoLevels);
+    scenes::BruteForce reference;
+    reference.update(s);
+    Random random(41);
+    for (int fill = 1; fill <= 16; ++fill)
+    {
+      EXPECT_EQ(
+        checks::wrongAnswers(embree, reference, checks::raysFromOnePoint(s, random, fill)), 0);
+      EXPECT_EQ(checks::wrongAnswers(embree, reference, checks::randomRays(s, random, fill)), 0);
+    }
+    for (int i = 0; i < 6; ++i) // longer streams, the last packet partly filled
+    {
+      EXPECT_EQ(checks::wrongAnswers(
+                  embree, reference, checks::raysFromOnePoint(s, random, 40 + 7 * i)), 0);
+      EXPECT_EQ(
+        checks::wrongAnswers(embree, reference, checks::randomRays(s, random, 40 + 7 * i)), 0);
+    }
+  }
+}
+
+TEST_P(EmbreePacket, UnusableRaysSpoilNoOther)
+{
+  EmbreeStructure embree(GetParam());
+  const Snapshot s = scene(embree, true);
+  scenes::BruteForce reference;
+  reference.update(s);
+  Random random(42);
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const double infinity = std::numeric_limits<double>::infinity();
+  for (int i = 0; i < 20; ++i)
+  {
+    std::vector<Ray> rays = checks::raysFromOnePoint(s, random, 16);
+    rays[random.below(16)].direction.x = nan;
+    rays[random.below(16)].origin.y = infinity;
+    rays[random.below(16)].direction = glm::dvec3(0.0);
+    rays[random.below(16)].tMaximum = nan;
+    rays[random.below(16)].tMaximum = 0.0;
+    rays[random.below(16)].origin = { 1e12, 1e12, 1e12 };
+    EXPECT_EQ(checks::wrongAnswers(embree, reference, rays), 0);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(InstructionSets, EmbreePacket,
+  ::testing::Values("", "isa=sse2", "isa=sse4.2", "isa=avx", "isa=avx2", "isa=avx512"));
+
+TEST(EmbreePacket, EmptyStreamsAndScenes)
+{
+  EmbreeStructure embree;
+  embree.intersect(nullptr, nullptr, 0, RayOrder::Coherent);
+  Ray rays[3];
+  Hit hits[3];
+  std::uint8_t occluded[3] = { 9, 9, 9 };
+  hits[1].triangle = 5;
+  embree.intersect(rays, hits, 3, RayOrder::Coherent);
+  embree.occluded(rays, occluded, 3, RayOrder::Coherent);
+  EXPECT_FALSE(hits[1].valid());
+  EXPECT_EQ(occluded[2], 0);
+}
+
+} // namespace
