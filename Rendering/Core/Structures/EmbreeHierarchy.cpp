@@ -22,16 +22,19 @@ constexpr int kLanes = TriangleBlock::kLanes;
 // fails when they do not suffice.
 constexpr unsigned int kDeepest = 512;
 
-bool testLane(const Search& search, const Member& member, const Source& source, Hit& hit)
+bool testLane(const glm::vec3* positions, const Member& member, Search& search, Hit& hit)
 {
-  hit.triangle = member.firstTriangle + source.triangle;
   if (hit.triangle == search.ray.originTriangle)
   {
     return false;
   }
+  if (!search.exact)
+  {
+    search.exact.emplace(search.ray.origin, search.ray.direction);
+  }
   TriangleHit exact;
-  const Corners corners = sceneCorners(source.position, member.toScene);
-  if (!search.exact.hitsTriangle(corners, search.ray.tMaximum, exact))
+  const Corners corners = sceneCorners(positions, member.toScene);
+  if (!search.exact->hitsTriangle(corners, search.ray.tMaximum, exact))
   {
     return false;
   }
@@ -48,53 +51,89 @@ int takeLowest(unsigned int& mask)
   return lowest;
 }
 
-// True when one of the lanes is the nearest hit now. The order of traversal must not show: of equal
-// hits the smallest number wins.
-bool intersectLanes(
-  const Source* sources, unsigned int lanes, const Member* members, Search& search)
-{
-  bool nearer = false;
-  while (lanes != 0)
-  {
-    const Source& source = sources[takeLowest(lanes)];
-    if (source.member == kNoMember || !members[source.member].visibleToRays)
-    {
-      continue;
-    }
-    Hit hit, &best = search.best;
-    if (testLane(search, members[source.member], source, hit) &&
-      (hit.t < best.t || (hit.t == best.t && hit.triangle < best.triangle)))
-    {
-      best = hit;
-      nearer = true;
-    }
-  }
-  return nearer;
-}
+} // namespace
 
-bool occludeLanes(const Source* sources, const SieveResult& lanes, const Member* members,
-  const Search& search)
+// What is asked of the lanes that have passed the sieve.
+struct Hierarchy::Lanes
 {
-  unsigned int possible = lanes.possible;
-  while (possible != 0)
+  const Hierarchy& self;
+  std::size_t block;
+  const Member* members;
+
+  // The exact test of a lane whose triangle's number stands in the hit.
+  bool test(int lane, const Member& member, Search& search, Hit& hit) const
   {
-    const int lane = takeLowest(possible);
-    const Source& source = sources[lane];
-    if (source.member == kNoMember || !members[source.member].castsShadow)
+    if (!this->self.Positions.empty())
     {
-      continue;
+      return testLane(
+        this->self.Positions[this->block * kLanes + lane].data(), member, search, hit);
     }
-    const Member& member = members[source.member];
-    const bool sure = (lanes.sure >> lane & 1u) != 0 &&
-      member.firstTriangle + source.triangle != search.ray.originTriangle;
-    Hit hit;
-    if (sure || testLane(search, member, source, hit))
+    const TriangleBlock& triangles = this->self.Blocks[this->block];
+    glm::vec3 positions[3];
+    for (int corner = 0; corner < 3; ++corner)
     {
-      return true;
+      for (int axis = 0; axis < 3; ++axis)
+      {
+        positions[corner][axis] = triangles.corner[corner][axis][lane];
+      }
     }
+    return testLane(positions, member, search, hit);
   }
-  return false;
-}
+
+  // True when one of the lanes is the nearest hit now. The order of traversal must not show: of equal
+  // hits the smallest number wins.
+  bool intersect(unsigned int possible, Search& search) const
+  {
+    const Source* const sources = this->self.Sources[this->block].data();
+    bool nearer = false;
+    while (possible != 0)
+    {
+      const int lane = takeLowest(possible);
+      const Source source = sources[lane];
+      if (source.member == kNoMember || !this->members[source.member].visibleToRays)
+      {
+        continue;
+      }
+      const Member& member = this->members[source.member];
+      Hit hit, &best = search.best;
+      hit.triangle = member.firstTriangle + source.triangle;
+      if (this->test(lane, member, search, hit) &&
+        (hit.t < best.t || (hit.t == best.t && hit.triangle < best.triangle)))
+      {
+        best = hit;
+        nearer = true;
+      }
+    }
+    return nearer;
+  }
+
+  bool occlude(SieveResult lanes, Search& search) const
+  {
+    const Source* const sources = this->self.Sources[this->block].data();
+    while (lanes.possible != 0)
+    {
+      const int lane = takeLowest(lanes.possible);
+      const Source source = sources[lane];
+      if (source.member == kNoMember || !this->members[source.member].castsShadow)
+      {
+        continue;
+      }
+      const Member& member = this->members[source.member];
+      Hit hit;
+      hit.triangle = member.firstTriangle + source.triangle;
+      const bool sure =
+        (lanes.sure >> lane & 1u) != 0 && hit.triangle != search.ray.originTriangle;
+      if (sure || this->test(lane, member, search, hit))
+      {
+        return true;
+      }
+    }
+    return false;
+  }
+};
+
+namespace
+{
 
 float surfaceArea(const glm::vec3& lower, const glm::vec3& upper)
 {
@@ -137,25 +176,37 @@ Bounds boundsOfBlock(const TriangleBlock& block)
 
 struct BlockCallbacks
 {
+  // What is wanted of a block only when the sieve lets something pass comes on its way here.
+  HRT_ALWAYS_INLINE static void fetchSources(const Hierarchy& self, unsigned int block)
+  {
+#if defined(__GNUC__)
+    __builtin_prefetch(&self.Sources[block]);
+#endif
+  }
+
   HRT_ALWAYS_INLINE static void intersect(const RTCIntersectFunctionNArguments* arguments)
   {
     const Hierarchy& self = *static_cast<const Hierarchy*>(arguments->geometryUserPtr);
     const TriangleBlock& block = self.Blocks[arguments->primID];
-    const Source* const sources = &self.Sources[std::size_t(arguments->primID) * kLanes];
-    Query& query = queryOf(arguments);
+    const Hierarchy::Lanes tests{ self, arguments->primID, queryOf(arguments).members };
     const unsigned int count = arguments->N;
+    fetchSources(self, arguments->primID);
     for (unsigned int i = 0; i < count; ++i)
     {
       if (!arguments->valid[i])
       {
         continue;
       }
-      Passage& passage = passageOf(arguments, i);
-      const unsigned int lanes = sieve(block, passage.sieve).possible;
-      if (lanes != 0 && intersectLanes(sources, lanes, query.members, *passage.search))
+      const SieveRay ray = sieveRay(raysOf(arguments), count, i);
+      const unsigned int lanes = sieve(block, ray, self.Slack).possible;
+      if (lanes == 0)
       {
-        passage.sieve.end = passage.end();
-        shorten(arguments, i, passage.sieve.end);
+        continue;
+      }
+      const Passage& passage = passageOf(arguments, i);
+      if (tests.intersect(lanes, *passage.search))
+      {
+        shorten(arguments, i, passage.end());
       }
     }
   }
@@ -164,20 +215,25 @@ struct BlockCallbacks
   {
     const Hierarchy& self = *static_cast<const Hierarchy*>(arguments->geometryUserPtr);
     const TriangleBlock& block = self.Blocks[arguments->primID];
-    const Source* const sources = &self.Sources[std::size_t(arguments->primID) * kLanes];
-    Query& query = queryOf(arguments);
+    const Hierarchy::Lanes tests{ self, arguments->primID, queryOf(arguments).members };
     const unsigned int count = arguments->N;
+    fetchSources(self, arguments->primID);
     for (unsigned int i = 0; i < count; ++i)
     {
       if (!arguments->valid[i])
       {
         continue;
       }
-      Passage& passage = passageOf(arguments, i);
-      const SieveResult lanes = sieve(block, passage.sieve);
-      if (lanes.possible != 0 && occludeLanes(sources, lanes, query.members, *passage.search))
+      const SieveRay ray = sieveRay(raysOf(arguments), count, i);
+      const SieveResult lanes = sieve(block, ray, self.Slack);
+      if (lanes.possible == 0)
       {
-        passage.search->found = true;
+        continue;
+      }
+      Search& search = *passageOf(arguments, i).search;
+      if (tests.occlude(lanes, search))
+      {
+        search.found = true;
         finish(arguments, i);
       }
     }
@@ -228,6 +284,7 @@ struct Hierarchy::Builder
 
   Hierarchy& Self;
   const std::vector<SourceTriangle>& Triangles;
+  const std::vector<std::array<glm::vec3, 3>>& Positions;
 
   static void* createNode(RTCThreadLocalAllocator allocator, unsigned int, void*)
   {
@@ -309,15 +366,16 @@ struct Hierarchy::Builder
   {
     const std::size_t block = this->Self.Blocks.size();
     this->Self.Blocks.emplace_back();
+    this->Self.Sources.emplace_back();
     for (int lane = 0; lane < kLanes; ++lane)
     {
       const bool used = std::uint32_t(lane) < leaf.count;
       const SourceTriangle& triangle = this->Triangles[leaf.triangle[used ? lane : 0]];
       this->Self.setLane(block, lane, triangle.corner);
-      this->Self.Sources.push_back(triangle.source);
-      if (!used)
+      this->Self.Sources[block][lane] = used ? triangle.source : Source{ kNoMember, triangle.source.triangle };
+      if (!this->Positions.empty())
       {
-        this->Self.Sources.back().member = kNoMember;
+        this->Self.Positions.push_back(this->Positions[leaf.triangle[used ? lane : 0]]);
       }
     }
     return static_cast<std::uint32_t>(block);
@@ -325,7 +383,8 @@ struct Hierarchy::Builder
 };
 
 Hierarchy::Hierarchy(
-  Device& device, const std::vector<SourceTriangle>& triangles, Scene::Kind kind)
+  Device& device, const std::vector<SourceTriangle>& triangles,
+  const std::vector<std::array<glm::vec3, 3>>& positions, Scene::Kind kind)
 {
   for (const SourceTriangle& triangle : triangles)
   {
@@ -334,8 +393,9 @@ Hierarchy::Hierarchy(
       this->Box.include(corner);
     }
   }
-  this->Padding = this->Box.padding();
-  Builder{ *this, triangles }.run(device);
+  this->Entry = EntryBox(this->Box);
+  this->Slack = SieveSlack(this->Box.reach());
+  Builder{ *this, triangles, positions }.run(device);
   this->CostWhenBuilt = this->cost();
   UserGeometry primitives;
   primitives.data = this;
@@ -365,12 +425,16 @@ bool Hierarchy::refit(Device& device, const std::vector<glm::vec3>& positions)
   {
     this->Box.include(position);
   }
-  this->Padding = this->Box.padding();
-  for (std::size_t i = 0; i < this->Sources.size(); ++i)
+  this->Entry = EntryBox(this->Box);
+  this->Slack = SieveSlack(this->Box.reach());
+  for (std::size_t block = 0; block < this->Blocks.size(); ++block)
   {
-    const glm::vec3* const corner = &positions[3 * std::size_t(this->Sources[i].triangle)];
-    this->setLane(i / kLanes, static_cast<int>(i % kLanes), { corner[0], corner[1], corner[2] });
-    std::copy_n(corner, 3, this->Sources[i].position);
+    for (int lane = 0; lane < kLanes; ++lane)
+    {
+      const glm::vec3* const corner =
+        &positions[3 * std::size_t(this->Sources[block][lane].triangle)];
+      this->setLane(block, lane, { corner[0], corner[1], corner[2] });
+    }
   }
   if (this->cost() > kWorstDecay * this->CostWhenBuilt)
   {
@@ -407,7 +471,7 @@ void Hierarchy::boundsOf(const RTCBoundsFunctionArguments* arguments)
 {
   const Hierarchy& self = *static_cast<const Hierarchy*>(arguments->geometryUserPtr);
   const Bounds box = boundsOfBlock(self.Blocks[arguments->primID]);
-  setBounds(*arguments->bounds_o, { box.lower, box.upper }, self.Padding);
+  setBounds(*arguments->bounds_o, { box.lower, box.upper }, self.Box.padding());
 }
 
 } // namespace embree

@@ -25,12 +25,16 @@ struct SourceTriangle
 class Hierarchy
 {
 public:
-  Hierarchy(Device& device, const std::vector<SourceTriangle>& triangles, Scene::Kind kind);
+  // `positions`: the geometries' own, a triangle's corners each, where the hierarchy's coordinates
+  // are others and their rounding has to be undone; else empty.
+  Hierarchy(Device& device, const std::vector<SourceTriangle>& triangles,
+    const std::vector<std::array<glm::vec3, 3>>& positions, Scene::Kind kind);
   Hierarchy(const Hierarchy&) = delete;
   Hierarchy& operator=(const Hierarchy&) = delete;
 
   RTCScene scene() const { return this->Tree->handle(); }
   const TraversalBox& box() const { return this->Box; }
+  const EntryBox& entry() const { return this->Entry; }
 
   // Moves the triangles of a hierarchy of one geometry to that geometry's new positions. False when
   // the hierarchy has become so much worse than it was when built that it is better built anew.
@@ -43,16 +47,23 @@ private:
     std::uint32_t child[2]; // a node's number, or ~ the number of a block
   };
   struct Builder;
+  struct Lanes;
 
   void setLane(std::size_t block, int lane, const std::array<glm::vec3, 3>& corner);
   double cost() const;
   static void boundsOf(const RTCBoundsFunctionArguments* arguments);
 
+  struct alignas(64) BlockSources : std::array<Source, TriangleBlock::kLanes> // a cache line
+  {
+  };
+
   std::vector<TriangleBlock> Blocks;
-  std::vector<Source> Sources; // kLanes a block
+  std::vector<BlockSources> Sources;
+  std::vector<std::array<glm::vec3, 3>> Positions; // kLanes a block, if not those of the blocks
   std::vector<Node> Nodes;     // children before parents
   TraversalBox Box;
-  double Padding = 0.0;
+  EntryBox Entry;
+  SieveSlack Slack;
   double CostWhenBuilt = 0.0;
   std::unique_ptr<Scene> Tree;
 };

@@ -9,6 +9,8 @@
 #include "Rendering/Core/Structures/TriangleBlock.h"
 
 #include <cstdint>
+#include <limits>
+#include <optional>
 
 namespace hrt
 {
@@ -24,13 +26,11 @@ struct Member
   bool castsShadow = false;
 };
 
-// The triangle that a lane of a block stands for, with all that the kernel wants in one place: whose
-// it is (number in the hierarchy's members, number in the geometry) and the geometry's own positions.
+// Which triangle a lane of a block holds: number in the hierarchy's members, number in the geometry.
 struct Source
 {
   std::uint32_t member = 0;
   std::uint32_t triangle = 0;
-  glm::vec3 position[3];
 };
 inline constexpr std::uint32_t kNoMember = 0xffffffffu; // an unused lane
 
@@ -38,13 +38,12 @@ inline constexpr std::uint32_t kNoMember = 0xffffffffu; // an unused lane
 struct Search
 {
   const Ray& ray;
-  ShearedRay exact;
+  std::optional<ShearedRay> exact; // made when the first triangle needs it
   Hit best;
   bool found = false; // for occlusion: some hit
 
   explicit Search(const Ray& r)
     : ray(r)
-    , exact(r.origin, r.direction)
   {
   }
   double end() const { return this->best.valid() ? this->best.t : this->ray.tMaximum; }
@@ -53,9 +52,8 @@ struct Search
 // A search's passage through one hierarchy.
 struct Passage
 {
-  Search* search = nullptr;
+  Search* search;
   TraversalRay traversal;
-  SieveRay sieve;
 
   // The parameter where the search now ends, rounded outward.
   float end() const { return this->traversal.end(this->search->end()); }
@@ -96,6 +94,16 @@ template <class Arguments>
 Passage& passageOf(const Arguments* arguments, unsigned int i)
 {
   return queryOf(arguments).passages[RTCRayN_id(raysOf(arguments), arguments->N, i)];
+}
+
+// A callback's i-th ray for the sieve.
+HRT_ALWAYS_INLINE SieveRay sieveRay(RTCRayN* rays, unsigned int count, unsigned int i)
+{
+  return { { RTCRayN_org_x(rays, count, i), RTCRayN_org_y(rays, count, i),
+             RTCRayN_org_z(rays, count, i) },
+    { RTCRayN_dir_x(rays, count, i), RTCRayN_dir_y(rays, count, i),
+      RTCRayN_dir_z(rays, count, i) },
+    RTCRayN_tfar(rays, count, i) };
 }
 
 // Tells Embree that the search of a callback's i-th ray now ends earlier.

@@ -39,7 +39,7 @@ void traverseOne(RTCScene scene, const Query& packet, unsigned int i, bool anyHi
   ray.dir_x = passage.traversal.direction.x;
   ray.dir_y = passage.traversal.direction.y;
   ray.dir_z = passage.traversal.direction.z;
-  ray.tfar = passage.sieve.end;
+  ray.tfar = passage.end();
   ray.mask = ~0u;
   if (anyHit)
   {
@@ -70,7 +70,7 @@ void traversePacket(RTCScene scene, Query& query, unsigned int mask, bool anyHit
     ray.dir_x[i] = passage.traversal.direction.x;
     ray.dir_y[i] = passage.traversal.direction.y;
     ray.dir_z[i] = passage.traversal.direction.z;
-    ray.tfar[i] = passage.sieve.end;
+    ray.tfar[i] = passage.end();
     ray.mask[i] = ~0u;
     ray.id[i] = i;
     rayHit.hit.geomID[i] = RTC_INVALID_GEOMETRY_ID;
@@ -123,17 +123,14 @@ struct Placed
     const Ray& ray = search.ray;
     const glm::dvec3 shift(this->fromScene[3]);
     const glm::dmat3 linear(this->fromScene);
-    const bool inside = this->onlyShifted
-      ? enterBox(this->hierarchy->box(), ray.origin + shift, ray.direction, search.end(),
-          passage.traversal)
-      : enterBox(this->hierarchy->box(), linear * ray.origin + shift, linear * ray.direction,
-          search.end(), passage.traversal);
-    if (inside)
+    if (this->onlyShifted)
     {
-      passage.sieve = SieveRay(passage.traversal, this->hierarchy->box().reach());
-      passage.sieve.end = passage.end();
+      return enterBox(this->hierarchy->entry(), ray.origin + shift, ray.direction, search.end(),
+        passage.traversal);
     }
-    return inside;
+    const glm::dvec3 origin = linear * ray.origin + shift, direction = linear * ray.direction;
+    return isUsable(origin, direction) &&
+      enterBox(this->hierarchy->entry(), origin, direction, search.end(), passage.traversal);
   }
 };
 
@@ -164,7 +161,8 @@ public:
     unsigned int mask = 0;
     for (unsigned int i = 0; i < count; ++i)
     {
-      if (searches[i]->exact.valid() && this->enter(*searches[i], passages[i]))
+      const Ray& ray = searches[i]->ray;
+      if (isUsable(ray.origin, ray.direction) && this->enter(*searches[i], passages[i]))
       {
         mask |= 1u << i;
       }
@@ -193,13 +191,9 @@ private:
       return this->Parts.front().enter(search, passage);
     }
     passage.search = &search;
-    if (this->Parts.empty() || !enterBox(this->Box, search.ray.origin, search.ray.direction,
-                                 search.end(), passage.traversal))
-    {
-      return false;
-    }
-    passage.sieve.end = passage.end();
-    return true;
+    return !this->Parts.empty() &&
+      enterBox(this->Entry, search.ray.origin, search.ray.direction, search.end(),
+        passage.traversal);
   }
 
   void rebuild(Device& device)
@@ -210,6 +204,7 @@ private:
       this->Box.include(part.box.lower);
       this->Box.include(part.box.upper);
     }
+    this->Entry = EntryBox(this->Box);
     constexpr const char* doing = "building the hierarchy of the parts";
     if (this->Parts.size() < 2)
     {
@@ -279,11 +274,9 @@ private:
     for (; entered != 0; entered &= entered - 1)
     {
       const unsigned int i = static_cast<unsigned int>(__builtin_ctz(entered));
-      Passage& passage = passageOf(arguments, i);
-      const float end = passage.end();
-      if (end < passage.sieve.end)
+      const float end = passageOf(arguments, i).end();
+      if (end < RTCRayN_tfar(raysOf(arguments), arguments->N, i))
       {
-        passage.sieve.end = end;
         shorten(arguments, i, end);
       }
     }
@@ -319,6 +312,7 @@ private:
   std::vector<Placed> Parts;
   std::vector<Member> Members;
   TraversalBox Box;
+  EntryBox Entry;
   std::unique_ptr<Scene> Tree; // of several parts
 };
 
@@ -346,7 +340,7 @@ std::vector<SourceTriangle> localTriangles(const Geometry& geometry)
   {
     const glm::vec3* const corner = geometry.positions.data() + 3 * i;
     triangles[i] = { { corner[0], corner[1], corner[2] },
-      { 0, static_cast<std::uint32_t>(i), { corner[0], corner[1], corner[2] } } };
+      { 0, static_cast<std::uint32_t>(i) } };
   }
   return triangles;
 }
@@ -364,17 +358,18 @@ struct MergedHierarchy
     this->anchor = snapshot.origin;
     this->parts.clear();
     std::vector<SourceTriangle> triangles;
+    std::vector<std::array<glm::vec3, 3>> positions;
     for (std::size_t i = 0; i < snapshot.parts.size(); ++i)
     {
       if (grouping.parts[i].place == place)
       {
-        this->add(snapshot.parts[i], triangles);
+        this->add(snapshot.parts[i], triangles, positions);
         this->parts.push_back(i);
       }
     }
     this->hierarchy = triangles.empty()
       ? nullptr
-      : std::make_shared<const Hierarchy>(device, triangles, Scene::Kind::Static);
+      : std::make_shared<const Hierarchy>(device, triangles, positions, Scene::Kind::Static);
   }
 
   // The members' numbers in a later snapshot; those that have left get none.
@@ -396,7 +391,8 @@ struct MergedHierarchy
   }
 
 private:
-  void add(const Part& part, std::vector<SourceTriangle>& triangles) const
+  void add(const Part& part, std::vector<SourceTriangle>& triangles,
+    std::vector<std::array<glm::vec3, 3>>& positions) const
   {
     const glm::dmat4 toAnchor = positionsToScene(part, this->anchor);
     const std::uint32_t member = static_cast<std::uint32_t>(this->parts.size());
@@ -405,7 +401,8 @@ private:
       const Corners c = sceneCorners(*part.geometry, toAnchor, i);
       const glm::vec3* const corner = part.geometry->positions.data() + 3 * i;
       triangles.push_back({ { glm::vec3(c.a), glm::vec3(c.b), glm::vec3(c.c) },
-        { member, static_cast<std::uint32_t>(i), { corner[0], corner[1], corner[2] } } });
+        { member, static_cast<std::uint32_t>(i) } });
+      positions.push_back({ corner[0], corner[1], corner[2] });
     }
   }
 };
@@ -512,7 +509,7 @@ struct EmbreeStructure::Implementation
       }
       // What has deformed once will do so again.
       current[version] = { std::make_shared<embree::Hierarchy>(this->device,
-                             embree::localTriangles(*part.geometry),
+                             embree::localTriangles(*part.geometry), std::vector<std::array<glm::vec3, 3>>(),
                              grouped.deformed ? embree::Scene::Kind::Refittable
                                               : embree::Scene::Kind::Static),
         grouped.deformed };

@@ -41,57 +41,79 @@ struct TraversalBox
   double padding() const { return std::max(0x1p-22 * this->reach(), 1e-30); }
 };
 
+// An outer box, grown, as rays meet it.
+struct EntryBox
+{
+  glm::dvec3 lower{ std::numeric_limits<double>::infinity() };
+  glm::dvec3 upper{ -std::numeric_limits<double>::infinity() };
+
+  EntryBox() = default;
+  explicit EntryBox(const TraversalBox& box)
+    : lower(box.lower - box.padding())
+    , upper(box.upper + box.padding())
+  {
+  }
+};
+
 // The ray from where it enters the outer box; parameters count from there, in units such that the
-// direction's longest component is 1.
+// direction's longest component is 1 or -1, exactly.
 struct TraversalRay
 {
   glm::vec3 origin;
   glm::vec3 direction;
-  double start = 0.0; // the true ray's t at `origin`
+  double start = 0.0; // of the box, in the same units from the true ray's origin
   double scale = 1.0; // parameter per t
 
-  // The end of the search for a true t, rounded outward: boxes at the same t stay in.
+  // The end of the search for a true t, rounded outward: boxes at the same t stay in. Two ulps are
+  // for the two roundings.
   float end(double t) const
   {
-    const float parameter = static_cast<float>((t - this->start) * this->scale);
-    return std::nextafter(parameter, std::numeric_limits<float>::infinity());
+    const double parameter = std::max(t * this->scale - this->start, 0.0);
+    return static_cast<float>(parameter) * (1.0f + 0x1p-22f) + std::numeric_limits<float>::min();
   }
 };
 
-// False when the ray, up to tMaximum, misses the grown outer box. The direction must be finite and
-// not zero. The bound above holds for origins up to 2^28 reaches away: farther, the rounding of
-// the entry point is no longer small beside the padding.
-inline bool enterBox(const TraversalBox& box, const glm::dvec3& origin,
-  const glm::dvec3& direction, double tMaximum, TraversalRay& ray)
+// A finite ray whose direction is not zero, by the exact kernel's rule: some component is normal.
+inline bool isUsable(const glm::dvec3& origin, const glm::dvec3& direction)
 {
-  const double padding = box.padding();
-  double enter = 0.0, leave = tMaximum;
+  // Anything times zero is zero, unless it is infinite or no number.
+  const glm::dvec3 zeros = 0.0 * origin + 0.0 * direction;
+  const glm::dvec3 lengths = glm::abs(direction);
+  return zeros.x + zeros.y + zeros.z == 0.0 &&
+    std::max({ lengths.x, lengths.y, lengths.z }) >= std::numeric_limits<double>::min();
+}
+
+// The direction in units of its longest component. A reciprocal saves two divisions, but that of a
+// very large number is not a normal one.
+inline glm::dvec3 inUnitsOf(double longest, const glm::dvec3& direction)
+{
+  return longest < 1e300 ? direction * (1.0 / longest) : direction / longest;
+}
+
+// False when the usable ray, up to tMaximum, misses the grown outer box. The bound above holds for
+// origins up to 2^26 reaches away: farther, the rounding of the entry point is no longer small beside
+// the padding.
+inline bool enterBox(const EntryBox& box, const glm::dvec3& origin, const glm::dvec3& direction,
+  double tMaximum, TraversalRay& ray)
+{
+  const glm::dvec3 lengths = glm::abs(direction);
+  ray.scale = std::max({ lengths.x, lengths.y, lengths.z });
+  const glm::dvec3 along = inUnitsOf(ray.scale, direction);
+  // A ray parallel to two faces is before both at minus infinity, or before or behind both: the
+  // products say so. Only on a grown face is one no number, and then either answer is right.
+  const glm::dvec3 inverse = 1.0 / along;
+  double enter = 0.0, leave = tMaximum * ray.scale;
   for (int axis = 0; axis < 3; ++axis)
   {
-    const double lower = box.lower[axis] - padding - origin[axis];
-    const double upper = box.upper[axis] + padding - origin[axis];
-    if (direction[axis] == 0.0)
-    {
-      if (lower > 0.0 || upper < 0.0)
-      {
-        return false;
-      }
-      continue;
-    }
-    const double t0 = lower / direction[axis], t1 = upper / direction[axis];
+    const double t0 = (box.lower[axis] - origin[axis]) * inverse[axis];
+    const double t1 = (box.upper[axis] - origin[axis]) * inverse[axis];
     enter = std::max(enter, std::min(t0, t1));
     leave = std::min(leave, std::max(t0, t1));
   }
-  if (!(enter <= leave))
-  {
-    return false;
-  }
-  const glm::dvec3 lengths = glm::abs(direction);
   ray.start = enter;
-  ray.scale = std::max({ lengths.x, lengths.y, lengths.z });
-  ray.origin = glm::vec3(origin + enter * direction);
-  ray.direction = glm::vec3(direction / ray.scale);
-  return true;
+  ray.origin = glm::vec3(origin + enter * along);
+  ray.direction = glm::vec3(along);
+  return enter <= leave;
 }
 
 } // namespace hrt

@@ -34,23 +34,51 @@ struct alignas(32) TriangleBlock
 {
   static constexpr int kLanes = 8;
   float corner[3][3][kLanes]; // corner, axis, lane
-  float pad[kLanes];          // five cache lines
+};
+
+// The bounds of the paragraph above for a hierarchy.
+struct SieveSlack
+{
+  float edge = 0;  // of an edge function, per s
+  float floor = 0; // the same where s is zero
+  float depth = 0;
+
+  SieveSlack() = default;
+  explicit SieveSlack(double reach)
+  {
+    // Below 1e-15 products reach float's smallest numbers, above 1e18 its largest: the first get a
+    // slack against which nothing is decided, the second an infinite one.
+    const float largest = reach > 1e18 ? std::numeric_limits<float>::infinity()
+                                       : static_cast<float>(std::max(reach, 1e-15));
+    constexpr float e = 0x1p-24f;
+    this->edge = 64.0f * e * largest;
+    this->floor = this->edge * 16.0f * e * largest + 1e-37f;
+    this->depth = 8.0f * e * largest;
+  }
 };
 
 // A traversal ray as the sieve wants it.
 struct SieveRay
 {
-  int x = 0, y = 1, z = 2;   // axes; z: the direction's longest component, here 1 or -1
-  float originX = 0, originY = 0, originZ = 0;
-  float shearX = 0, shearY = 0;
-  float forward = 1;         // the sign of the direction's z
-  float edgeSlack = 0;       // per s
-  float edgeFloor = 0;
-  float depthSlack = 0;
-  float end = 0;             // parameter where the search ends, rounded outward
+  int x, y, z; // axes; z: one along which the direction is 1 or -1
+  float originX, originY, originZ;
+  float shearX, shearY;
+  float forward; // the sign of the direction's z
+  float end;     // parameter where the search ends, rounded outward
 
-  SieveRay() = default;
-  SieveRay(const TraversalRay& ray, double reach);
+  HRT_ALWAYS_INLINE SieveRay(const float (&origin)[3], const float (&direction)[3], float last)
+  {
+    this->z = std::fabs(direction[0]) >= 1.0f ? 0 : (std::fabs(direction[1]) >= 1.0f ? 1 : 2);
+    this->x = this->z == 2 ? 0 : this->z + 1;
+    this->y = this->z == 0 ? 2 : this->z - 1;
+    this->originX = origin[this->x];
+    this->originY = origin[this->y];
+    this->originZ = origin[this->z];
+    this->forward = direction[this->z];
+    this->shearX = direction[this->x] * this->forward;
+    this->shearY = direction[this->y] * this->forward;
+    this->end = last;
+  }
 };
 
 // Which lanes may be hit, and which of these surely are.
@@ -60,30 +88,9 @@ struct SieveResult
   unsigned int sure = 0;
 };
 
-inline SieveRay::SieveRay(const TraversalRay& ray, double reach)
-{
-  const glm::vec3 lengths = glm::abs(ray.direction);
-  this->z = lengths.x >= 1.0f ? 0 : (lengths.y >= 1.0f ? 1 : 2);
-  this->x = this->z == 2 ? 0 : this->z + 1;
-  this->y = this->z == 0 ? 2 : this->z - 1;
-  this->originX = ray.origin[this->x];
-  this->originY = ray.origin[this->y];
-  this->originZ = ray.origin[this->z];
-  this->forward = ray.direction[this->z];
-  this->shearX = ray.direction[this->x] * this->forward;
-  this->shearY = ray.direction[this->y] * this->forward;
-  // Below 1e-15 products reach float's smallest numbers, above 1e18 its largest: the first get a
-  // slack against which nothing is decided, the second an infinite one.
-  const float largest = static_cast<float>(reach > 1e18 ? std::numeric_limits<double>::infinity()
-                                                        : std::max(reach, 1e-15));
-  constexpr float e = 0x1p-24f;
-  this->edgeSlack = 64.0f * e * largest;
-  this->edgeFloor = this->edgeSlack * 16.0f * e * largest + 1e-37f;
-  this->depthSlack = 8.0f * e * largest;
-}
-
 // The loop body is what one lane does; compilers turn it into one pass over all lanes.
-HRT_ALWAYS_INLINE SieveResult sieve(const TriangleBlock& block, const SieveRay& ray)
+HRT_ALWAYS_INLINE SieveResult sieve(
+  const TriangleBlock& block, const SieveRay& ray, const SieveSlack& slacks)
 {
   constexpr int n = TriangleBlock::kLanes;
   const float* const xa = block.corner[0][ray.x];
@@ -97,9 +104,9 @@ HRT_ALWAYS_INLINE SieveResult sieve(const TriangleBlock& block, const SieveRay& 
   const float* const zc = block.corner[2][ray.z];
   const float ox = ray.originX, oy = ray.originY, oz = ray.originZ;
   const float sx = ray.shearX, sy = ray.shearY, forward = ray.forward;
-  const float slack = ray.edgeSlack, floor = ray.edgeFloor;
-  const float begin = ray.depthSlack, end = ray.end + ray.depthSlack;
-  const float surelyBefore = ray.end * (1.0f - 0x1p-22f) - ray.depthSlack;
+  const float slack = slacks.edge, floor = slacks.floor;
+  const float begin = slacks.depth, end = ray.end + slacks.depth;
+  const float surelyBefore = ray.end * (1.0f - 0x1p-21f) - slacks.depth;
   std::int32_t possible[n], sure[n];
   for (int i = 0; i < n; ++i)
   {
