@@ -30,7 +30,8 @@ std::string describe(RTCError error)
   }
 }
 
-// Embree answers "8 rays natively" from AVX on; AVX2 and fused operations are asked of the processor.
+// Embree answers "8 rays natively" from AVX on; AVX2 and fused operations are asked of the
+// processor.
 bool runsWide(RTCDevice device)
 {
 #if defined(__GNUC__) && defined(__x86_64__)
@@ -91,16 +92,15 @@ Scene::Scene(Device& device, const UserGeometry& primitives, Kind kind, const ch
   if (kind == Kind::Refittable)
   {
     // Only scenes of this quality look at the quality that a geometry asks for.
-    rtcSetSceneFlags(this->Handle,
-      static_cast<RTCSceneFlags>(RTC_SCENE_FLAG_ROBUST | RTC_SCENE_FLAG_DYNAMIC));
+    rtcSetSceneFlags(
+      this->Handle, static_cast<RTCSceneFlags>(RTC_SCENE_FLAG_ROBUST | RTC_SCENE_FLAG_DYNAMIC));
     rtcSetSceneBuildQuality(this->Handle, RTC_BUILD_QUALITY_LOW);
   }
   rtcSetGeometryUserData(this->Primitives, primitives.data);
   rtcSetGeometryBoundsFunction(this->Primitives, primitives.bounds, nullptr);
   rtcSetGeometryIntersectFunction(this->Primitives, primitives.intersect);
   rtcSetGeometryOccludedFunction(this->Primitives, primitives.occluded);
-  rtcSetGeometryUserPrimitiveCount(
-    this->Primitives, static_cast<unsigned int>(primitives.count));
+  rtcSetGeometryUserPrimitiveCount(this->Primitives, static_cast<unsigned int>(primitives.count));
   rtcCommitGeometry(this->Primitives);
   rtcAttachGeometry(this->Handle, this->Primitives);
   rtcCommitScene(this->Handle);

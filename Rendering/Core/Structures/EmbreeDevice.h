@@ -1,5 +1,5 @@
-// An Embree device whose errors become exceptions with Embree's own words, and the one kind of scene
-// that the structure builds on it.
+// An Embree device whose errors become exceptions with Embree's own words, and the one kind of
+// scene that the structure builds on it.
 #pragma once
 
 #include "Rendering/Core/Structures/EmbreeShim.h"

@@ -53,7 +53,8 @@ int takeLowest(unsigned int& mask)
 
 } // namespace
 
-// What is asked of the lanes that have passed the sieve.
+// What is asked of the lanes that have passed the sieve. Never inlined, to leave the registers to
+// the sieve's loop and the exact arithmetic to the compiler's own target.
 struct Hierarchy::Lanes
 {
   const Hierarchy& self;
@@ -80,9 +81,9 @@ struct Hierarchy::Lanes
     return testLane(positions, member, search, hit);
   }
 
-  // True when one of the lanes is the nearest hit now. The order of traversal must not show: of equal
-  // hits the smallest number wins.
-  bool intersect(unsigned int possible, Search& search) const
+  // True when one of the lanes is the nearest hit now. The order of traversal must not show: of
+  // equal hits the smallest number wins.
+  HRT_NEVER_INLINE bool intersect(unsigned int possible, Search& search) const
   {
     const Source* const sources = this->self.Sources[this->block].data();
     bool nearer = false;
@@ -107,7 +108,7 @@ struct Hierarchy::Lanes
     return nearer;
   }
 
-  bool occlude(SieveResult lanes, Search& search) const
+  HRT_NEVER_INLINE bool occlude(SieveResult lanes, Search& search) const
   {
     const Source* const sources = this->self.Sources[this->block].data();
     while (lanes.possible != 0)
@@ -121,8 +122,7 @@ struct Hierarchy::Lanes
       const Member& member = this->members[source.member];
       Hit hit;
       hit.triangle = member.firstTriangle + source.triangle;
-      const bool sure =
-        (lanes.sure >> lane & 1u) != 0 && hit.triangle != search.ray.originTriangle;
+      const bool sure = (lanes.sure >> lane & 1u) != 0 && hit.triangle != search.ray.originTriangle;
       if (sure || this->test(lane, member, search, hit))
       {
         return true;
@@ -372,7 +372,8 @@ struct Hierarchy::Builder
       const bool used = std::uint32_t(lane) < leaf.count;
       const SourceTriangle& triangle = this->Triangles[leaf.triangle[used ? lane : 0]];
       this->Self.setLane(block, lane, triangle.corner);
-      this->Self.Sources[block][lane] = used ? triangle.source : Source{ kNoMember, triangle.source.triangle };
+      this->Self.Sources[block][lane] =
+        used ? triangle.source : Source{ kNoMember, triangle.source.triangle };
       if (!this->Positions.empty())
       {
         this->Self.Positions.push_back(this->Positions[leaf.triangle[used ? lane : 0]]);
@@ -382,8 +383,7 @@ struct Hierarchy::Builder
   }
 };
 
-Hierarchy::Hierarchy(
-  Device& device, const std::vector<SourceTriangle>& triangles,
+Hierarchy::Hierarchy(Device& device, const std::vector<SourceTriangle>& triangles,
   const std::vector<std::array<glm::vec3, 3>>& positions, Scene::Kind kind)
 {
   for (const SourceTriangle& triangle : triangles)
@@ -403,8 +403,7 @@ Hierarchy::Hierarchy(
   primitives.bounds = &Hierarchy::boundsOf;
   primitives.intersect = device.wide() ? &*intersectBlockWide : &intersectBlock;
   primitives.occluded = device.wide() ? &*occludeBlockWide : &occludeBlock;
-  this->Tree =
-    std::make_unique<Scene>(device, primitives, kind, "building a geometry's hierarchy");
+  this->Tree = std::make_unique<Scene>(device, primitives, kind, "building a geometry's hierarchy");
 }
 
 void Hierarchy::setLane(std::size_t block, int lane, const std::array<glm::vec3, 3>& corner)
@@ -449,9 +448,8 @@ bool Hierarchy::refit(Device& device, const std::vector<glm::vec3>& positions)
 double Hierarchy::cost() const
 {
   std::vector<Bounds> bounds(this->Nodes.size());
-  const auto boundsOfChild = [&](std::uint32_t child) {
-    return child < bounds.size() ? bounds[child] : boundsOfBlock(this->Blocks[~child]);
-  };
+  const auto boundsOfChild = [&](std::uint32_t child)
+  { return child < bounds.size() ? bounds[child] : boundsOfBlock(this->Blocks[~child]); };
   double areas = 0.0;
   for (std::size_t i = 0; i < this->Nodes.size(); ++i)
   {
@@ -462,8 +460,7 @@ double Hierarchy::cost() const
       bounds[i].include(box);
     }
   }
-  const double root =
-    bounds.empty() ? 0.0 : surfaceArea(bounds.back().lower, bounds.back().upper);
+  const double root = bounds.empty() ? 0.0 : surfaceArea(bounds.back().lower, bounds.back().upper);
   return root > 0.0 ? areas / root : 1.0;
 }
 

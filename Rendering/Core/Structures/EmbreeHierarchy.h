@@ -1,6 +1,6 @@
-// A hierarchy over triangles: the triangles of one geometry, or those of many parts merged into common
-// coordinates. Embree builds and traverses it; its primitives are blocks of up to eight neighbouring
-// triangles (TriangleBlock.h), whose possible hits the exact kernel decides.
+// A hierarchy over triangles: the triangles of one geometry, or those of many parts merged into
+// common coordinates. Embree builds and traverses it; its primitives are blocks of up to eight
+// neighbouring triangles (TriangleBlock.h), whose possible hits the exact kernel decides.
 #pragma once
 
 #include "Rendering/Core/Structures/EmbreeDevice.h"
@@ -60,7 +60,7 @@ private:
   std::vector<TriangleBlock> Blocks;
   std::vector<BlockSources> Sources;
   std::vector<std::array<glm::vec3, 3>> Positions; // kLanes a block, if not those of the blocks
-  std::vector<Node> Nodes;     // children before parents
+  std::vector<Node> Nodes;                         // children before parents
   TraversalBox Box;
   EntryBox Entry;
   SieveSlack Slack;

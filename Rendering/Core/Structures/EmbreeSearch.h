@@ -1,5 +1,5 @@
-// What rays carry through Embree's hierarchies and back into our callbacks: the true ray and its best
-// hit (one a ray), and the stand-in that Embree traverses (one a ray and hierarchy).
+// What rays carry through Embree's hierarchies and back into our callbacks: the true ray and its
+// best hit (one a ray), and the stand-in that Embree traverses (one a ray and hierarchy).
 #pragma once
 
 #include "Rendering/Core/Geometry/TriangleTest.h"
@@ -20,13 +20,14 @@ namespace embree
 // A part as the callbacks see it; renewed with every update.
 struct Member
 {
-  glm::dmat4 toScene{ 1.0 };   // from the geometry's positions
+  glm::dmat4 toScene{ 1.0 }; // from the geometry's positions
   TriangleId firstTriangle = 0;
-  bool visibleToRays = false;  // neither: also when the part has left the hierarchy
+  bool visibleToRays = false; // neither: also when the part has left the hierarchy
   bool castsShadow = false;
 };
 
-// Which triangle a lane of a block holds: number in the hierarchy's members, number in the geometry.
+// Which triangle a lane of a block holds: number in the hierarchy's members, number in the
+// geometry.
 struct Source
 {
   std::uint32_t member = 0;
@@ -59,8 +60,8 @@ struct Passage
   float end() const { return this->traversal.end(this->search->end()); }
 };
 
-// The passages of one call to Embree. Embree hands the context back to the callbacks, which know that
-// it belongs to a query; it may split a packet, so that a ray tells its passage by its id.
+// The passages of one call to Embree. Embree hands the context back to the callbacks, which know
+// that it belongs to a query; it may split a packet, so that a ray tells its passage by its id.
 struct Query : QueryContext
 {
   Passage* passages = nullptr;
@@ -101,8 +102,7 @@ HRT_ALWAYS_INLINE SieveRay sieveRay(RTCRayN* rays, unsigned int count, unsigned 
 {
   return { { RTCRayN_org_x(rays, count, i), RTCRayN_org_y(rays, count, i),
              RTCRayN_org_z(rays, count, i) },
-    { RTCRayN_dir_x(rays, count, i), RTCRayN_dir_y(rays, count, i),
-      RTCRayN_dir_z(rays, count, i) },
+    { RTCRayN_dir_x(rays, count, i), RTCRayN_dir_y(rays, count, i), RTCRayN_dir_z(rays, count, i) },
     RTCRayN_tfar(rays, count, i) };
 }
 

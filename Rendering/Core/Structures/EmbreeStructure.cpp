@@ -1,5 +1,5 @@
-// Implements the ray structure over Embree: which hierarchies there are (by Grouping.h), the top level
-// that holds them, and the way of single rays and packets through both.
+// Implements the ray structure over Embree: which hierarchies there are (by Grouping.h), the top
+// level that holds them, and the way of single rays and packets through both.
 #include "Rendering/Core/Structures/EmbreeStructure.h"
 
 #include "Rendering/Core/Structures/EmbreeDevice.h"
@@ -192,8 +192,8 @@ private:
     }
     passage.search = &search;
     return !this->Parts.empty() &&
-      enterBox(this->Entry, search.ray.origin, search.ray.direction, search.end(),
-        passage.traversal);
+      enterBox(
+        this->Entry, search.ray.origin, search.ray.direction, search.end(), passage.traversal);
   }
 
   void rebuild(Device& device)
@@ -226,8 +226,7 @@ private:
   static void boundsOf(const RTCBoundsFunctionArguments* arguments)
   {
     const TopLevel& self = *static_cast<const TopLevel*>(arguments->geometryUserPtr);
-    setBounds(
-      *arguments->bounds_o, self.Parts[arguments->primID].box, self.Box.padding());
+    setBounds(*arguments->bounds_o, self.Parts[arguments->primID].box, self.Box.padding());
   }
 
   // Enters a part with those of the rays that meet it, each as a passage of its own.
@@ -240,8 +239,7 @@ private:
     entered = 0;
     for (unsigned int i = 0; i < arguments->N; ++i)
     {
-      if (arguments->valid[i] &&
-        part.enter(*passageOf(arguments, i).search, lower.passages[i]))
+      if (arguments->valid[i] && part.enter(*passageOf(arguments, i).search, lower.passages[i]))
       {
         entered |= 1u << i;
       }
@@ -339,14 +337,13 @@ std::vector<SourceTriangle> localTriangles(const Geometry& geometry)
   for (std::size_t i = 0; i < triangles.size(); ++i)
   {
     const glm::vec3* const corner = geometry.positions.data() + 3 * i;
-    triangles[i] = { { corner[0], corner[1], corner[2] },
-      { 0, static_cast<std::uint32_t>(i) } };
+    triangles[i] = { { corner[0], corner[1], corner[2] }, { 0, static_cast<std::uint32_t>(i) } };
   }
   return triangles;
 }
 
-// Many parts in one hierarchy, in world coordinates relative to `anchor`: the scene's origin when it
-// was built, which later snapshots are free to leave.
+// Many parts in one hierarchy, in world coordinates relative to `anchor`: the scene's origin when
+// it was built, which later snapshots are free to leave.
 struct MergedHierarchy
 {
   std::shared_ptr<const Hierarchy> hierarchy; // null: nothing merged
@@ -483,7 +480,8 @@ struct EmbreeStructure::Implementation
   void updateOwns(const Snapshot& snapshot, const Grouping& now, StructureReport& report)
   {
     Owns current;
-    const auto forEachMissing = [&](auto action) {
+    const auto forEachMissing = [&](auto action)
+    {
       for (std::size_t i = 0; i < snapshot.parts.size(); ++i)
       {
         const std::uint64_t version = snapshot.parts[i].geometry->version;
@@ -493,28 +491,33 @@ struct EmbreeStructure::Implementation
         }
       }
     };
-    forEachMissing([&](const Part&, const GroupedPart&, std::uint64_t version) {
-      const auto known = this->owns.find(version);
-      if (known != this->owns.end())
+    forEachMissing(
+      [&](const Part&, const GroupedPart&, std::uint64_t version)
       {
-        current.insert(*known);
-        ++report.reused;
-      }
-    });
-    forEachMissing([&](const Part& part, const GroupedPart& grouped, std::uint64_t version) {
-      if (this->refitOwn(part, grouped, current))
+        const auto known = this->owns.find(version);
+        if (known != this->owns.end())
+        {
+          current.insert(*known);
+          ++report.reused;
+        }
+      });
+    forEachMissing(
+      [&](const Part& part, const GroupedPart& grouped, std::uint64_t version)
       {
-        ++report.refitted;
-        return;
-      }
-      // What has deformed once will do so again.
-      current[version] = { std::make_shared<embree::Hierarchy>(this->device,
-                             embree::localTriangles(*part.geometry), std::vector<std::array<glm::vec3, 3>>(),
-                             grouped.deformed ? embree::Scene::Kind::Refittable
-                                              : embree::Scene::Kind::Static),
-        grouped.deformed };
-      ++report.built;
-    });
+        if (this->refitOwn(part, grouped, current))
+        {
+          ++report.refitted;
+          return;
+        }
+        // What has deformed once will do so again.
+        current[version] = {
+          std::make_shared<embree::Hierarchy>(this->device, embree::localTriangles(*part.geometry),
+            std::vector<std::array<glm::vec3, 3>>(),
+            grouped.deformed ? embree::Scene::Kind::Refittable : embree::Scene::Kind::Static),
+          grouped.deformed
+        };
+        ++report.built;
+      });
     this->owns.swap(current);
   }
 
@@ -572,8 +575,8 @@ struct EmbreeStructure::Implementation
     placed.push_back(std::move(result));
   }
 
-  void placeOwn(const Part& part, const glm::dvec3& origin,
-    std::vector<embree::Placed>& placed, std::vector<embree::Member>& members)
+  void placeOwn(const Part& part, const glm::dvec3& origin, std::vector<embree::Placed>& placed,
+    std::vector<embree::Member>& members)
   {
     embree::Placed result;
     result.firstMember = members.size();
@@ -662,8 +665,7 @@ void tracePackets(
 
 } // namespace
 
-void EmbreeStructure::intersect(
-  const Ray* rays, Hit* hits, std::size_t count, RayOrder order) const
+void EmbreeStructure::intersect(const Ray* rays, Hit* hits, std::size_t count, RayOrder order) const
 {
   if (order == RayOrder::Incoherent)
   {

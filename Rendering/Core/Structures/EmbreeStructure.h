@@ -2,13 +2,15 @@
 //
 // Embree's own triangles are tested in single precision and, aimed at vertices of a closed mesh, up
 // to two rays in a hundred slip through even in its robust mode; a filter could reject its wrong
-// hits but never bring back its misses. Triangles are therefore handed to Embree as user geometry:
-// it builds and traverses the hierarchy, over boxes grown by a derived bound (TraversalRay.h), and
-// every triangle whose box the ray meets is decided by Geometry/TriangleTest.h in double. The
-// result is, bit by bit, that of a loop over all triangles, for any instruction set.
+// hits but never bring back its misses. Triangles are therefore handed to Embree as user geometry,
+// eight neighbours a primitive: it builds and traverses the hierarchy, over boxes grown by a
+// derived bound (TraversalRay.h); a sieve in single precision drops what surely is not hit
+// (TriangleBlock.h); and every triangle that is left is decided by Geometry/TriangleTest.h in
+// double. The result is, bit by bit, that of a loop over all triangles, for any instruction set,
+// packet and grouping.
 //
-// Two levels: one hierarchy per Geometry, kept by its version and shared by all parts that show it,
-// below one hierarchy of the parts. A moved part costs only the latter.
+// Which parts share a hierarchy is the policy of Grouping.h. A moved part costs the hierarchy over
+// the parts' boxes only; a mesh that deforms is refitted.
 #pragma once
 
 #include "Rendering/Core/Structures/Structure.h"
@@ -24,6 +26,7 @@ class EmbreeStructure final : public Structure
 public:
   // `configuration` goes to rtcNewDevice, e.g. "isa=sse2"; empty: Embree's choice. Every error that
   // Embree reports, here or in update, is thrown as std::runtime_error with Embree's own words.
+  // After an error in update the structure is empty until the next one.
   //
   // Embree recommends flush-to-zero; it is not set here, and must not be set by a host's threads:
   // the exact kernel needs gradual underflow, and the mode would leak into all code of the thread.
@@ -38,8 +41,8 @@ public:
   bool occluded(const Ray& ray) const override;
   // Coherent rays are traversed in packets of 16.
   void intersect(const Ray* rays, Hit* hits, std::size_t count, RayOrder order) const override;
-  void occluded(const Ray* rays, std::uint8_t* occluded, std::size_t count,
-    RayOrder order) const override;
+  void occluded(
+    const Ray* rays, std::uint8_t* occluded, std::size_t count, RayOrder order) const override;
 
 private:
   struct Implementation;

@@ -25,8 +25,8 @@ bool meetsRays(const Part& part)
   return part.geometry->triangleCount() > 0 && (part.visibleToRays || part.castsShadow);
 }
 
-// Numbers in the last snapshot by key. Parts mostly stay in their order: only where one does not is a
-// table made. Each earlier part is found once, should a key occur twice.
+// Numbers in the last snapshot by key. Parts mostly stay in their order: only where one does not is
+// a table made. Each earlier part is found once, should a key occur twice.
 class Earlier
 {
 public:
@@ -141,8 +141,7 @@ private:
       {
         grouped.updatesToRest = old->updatesToRest;
         grouped.stillUpdates = unchanged(*old, grouped) ? old->stillUpdates + 1 : 0;
-        grouped.deformed =
-          old->version != grouped.version && old->triangles == grouped.triangles;
+        grouped.deformed = old->version != grouped.version && old->triangles == grouped.triangles;
       }
     }
   }
@@ -222,8 +221,8 @@ private:
     for (std::size_t i = 0; i < this->Parts.size(); ++i)
     {
       GroupedPart& part = this->Parts[i];
-      const bool joins = part.stillUpdates >= part.updatesToRest ||
-        (addedJoin && part.before == kNewPart);
+      const bool joins =
+        part.stillUpdates >= part.updatesToRest || (addedJoin && part.before == kNewPart);
       if (this->mayJoin(i) && joins)
       {
         part.place = Place::Merged;
@@ -266,8 +265,7 @@ private:
         continue;
       }
       const bool tiny = part.triangles <= kTinyPart && !this->Copied[i];
-      part.place =
-        tiny || isIllConditioned(part.positionsToWorld) ? Place::Flat : Place::Alone;
+      part.place = tiny || isIllConditioned(part.positionsToWorld) ? Place::Flat : Place::Alone;
       if (part.place == Place::Alone)
       {
         moving.push_back(i);

@@ -7,12 +7,15 @@
 //   2. A merged part that moves or changes leaves. The merged structure is kept - whoever traces it
 //      skips the part - until a quarter of it is gone.
 //   3. A moving part stands alone, in coordinates of its own: a movement is a new matrix only.
-//   4. A part that rests again joins after so many still updates, twice as many after each departure,
+//   4. A part that rests again joins after so many still updates, twice as many after each
+//   departure,
 //      and only when the merged structure is cheap to build or the joining parts are a fair share
 //      of it.
 //   5. Moving parts that share their space with many others (each ray would enter all of them) and
-//      those too small to be worth a structure are put in one flat structure, built for each movement.
-//   6. A geometry of many copies is never multiplied: its parts stand alone and share one structure.
+//      those too small to be worth a structure are put in one flat structure, built for each
+//      movement.
+//   6. A geometry of many copies is never multiplied: its parts stand alone and share one
+//   structure.
 //   7. A matrix that cannot be inverted to full precision has no place on its own: merged or flat.
 //   8. A single resting part stands alone: that is as fast, and it may begin to move for free.
 #pragma once
@@ -67,7 +70,8 @@ struct Grouping
 inline constexpr unsigned int kUpdatesToRest = 16;
 // The number doubles with every departure up to this.
 inline constexpr unsigned int kMostUpdatesToRest = 1024;
-// A merged structure of so many triangles is built in about a hundredth of a second: any part may join.
+// A merged structure of so many triangles is built in about a hundredth of a second: any part may
+// join.
 inline constexpr std::size_t kCheapTriangles = 65536;
 // A larger one is built anew when one in so many triangles would join or has left, so that the
 // building of each triangle is paid for by a fixed number of changes.
@@ -82,8 +86,8 @@ inline constexpr std::size_t kTinyPart = 8;
 // Copies of a geometry may be merged up to so many triangles in all.
 inline constexpr std::size_t kMostCopiedTriangles = 1u << 20;
 // The ratio of a matrix' strongest to its weakest stretch up to which inverting it in double keeps
-// errors 2^-10 below half an ulp of single precision, which is what hierarchies work in: 2^(53-24-10),
-// and a few bits for the sums.
+// errors 2^-10 below half an ulp of single precision, which is what hierarchies work in:
+// 2^(53-24-10), and a few bits for the sums.
 inline constexpr double kLargestCondition = 0x1p16;
 // A refitted hierarchy whose expected cost has grown by more than this is better built anew.
 inline constexpr double kWorstDecay = 1.3;

@@ -91,8 +91,8 @@ inline glm::dvec3 inUnitsOf(double longest, const glm::dvec3& direction)
 }
 
 // False when the usable ray, up to tMaximum, misses the grown outer box. The bound above holds for
-// origins up to 2^26 reaches away: farther, the rounding of the entry point is no longer small beside
-// the padding.
+// origins up to 2^26 reaches away: farther, the rounding of the entry point is no longer small
+// beside the padding.
 inline bool enterBox(const EntryBox& box, const glm::dvec3& origin, const glm::dvec3& direction,
   double tMaximum, TraversalRay& ray)
 {

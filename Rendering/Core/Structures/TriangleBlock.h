@@ -1,15 +1,15 @@
-// Eight neighbouring triangles in single precision, tested together: a sieve before the exact kernel.
-// It may let a triangle pass that the kernel refuses, never the other way round; what the kernel
-// then says is the result. That is why the sieve may use any instruction set and fused operations.
+// Eight neighbouring triangles in single precision, tested together: a sieve before the exact
+// kernel. It may let a triangle pass that the kernel refuses, never the other way round; what the
+// kernel then says is the result. That is why the sieve may use any instruction set and fused
+// operations.
 //
 // The edge functions are those of Geometry/TriangleTest.h, rounded to float. Let R be the reach of
 // the hierarchy's box (TraversalRay.h), e = 2^-24. Against the true ray and the true corners,
-//   a corner relative to the origin is off by 4 R e: the corner's own rounding R e, the origin's R e
-//   and that of a difference of up to 2 R;
-//   its sheared coordinate by 16 R e: twice the above, the shear's rounding times a depth of 2 R,
-//   the rounding of a product of 2 R and of a difference of 4 R;
-//   an edge function, with s the larger |x| + |y| of a corner, by 2 * 16 R e * s for the factors,
-//   2 (16 R e)^2 for their errors' products and 4 e * 4 R * s for three roundings.
+//   a corner relative to the origin is off by 4 R e: the corner's own rounding R e, the origin's R
+//   e and that of a difference of up to 2 R; its sheared coordinate by 16 R e: twice the above, the
+//   shear's rounding times a depth of 2 R, the rounding of a product of 2 R and of a difference of
+//   4 R; an edge function, with s the larger |x| + |y| of a corner, by 2 * 16 R e * s for the
+//   factors, 2 (16 R e)^2 for their errors' products and 4 e * 4 R * s for three roundings.
 // Together 48 R e * (s + 16 R e). The rest of 64 is for everything done in double, the kernel's own
 // roundings included: about a million times finer, unless a matrix is so skewed that inverting it
 // loses that (kLargestCondition in Grouping.h keeps such parts out of hierarchies of their own).
@@ -19,6 +19,7 @@
 
 #include <cmath>
 #include <cstdint>
+#include <cstring>
 
 namespace hrt
 {
@@ -26,11 +27,13 @@ namespace hrt
 // Inlined into callers that are compiled for several instruction sets.
 #if defined(__GNUC__)
 #define HRT_ALWAYS_INLINE inline __attribute__((always_inline))
+#define HRT_NEVER_INLINE __attribute__((noinline))
 #else
 #define HRT_ALWAYS_INLINE inline
+#define HRT_NEVER_INLINE
 #endif
 
-struct alignas(32) TriangleBlock
+struct alignas(64) TriangleBlock // five cache lines
 {
   static constexpr int kLanes = 8;
   float corner[3][3][kLanes]; // corner, axis, lane
@@ -88,6 +91,15 @@ struct SieveResult
   unsigned int sure = 0;
 };
 
+// Bits of all lanes together; in words of two lanes, which takes compilers fewer steps.
+HRT_ALWAYS_INLINE unsigned int unionOf(const std::int32_t (&lanes)[TriangleBlock::kLanes])
+{
+  std::uint64_t pairs[TriangleBlock::kLanes / 2];
+  std::memcpy(pairs, lanes, sizeof(pairs));
+  const std::uint64_t both = (pairs[0] | pairs[1]) | (pairs[2] | pairs[3]);
+  return static_cast<unsigned int>(both | both >> 32);
+}
+
 // The loop body is what one lane does; compilers turn it into one pass over all lanes.
 HRT_ALWAYS_INLINE SieveResult sieve(
   const TriangleBlock& block, const SieveRay& ray, const SieveSlack& slacks)
@@ -127,17 +139,14 @@ HRT_ALWAYS_INLINE SieveResult sieve(
     const float farAb = da > db ? da : db, farthest = farAb > dc ? farAb : dc;
     const bool outside =
       ((least < -bound) & (most > bound)) | (nearest > end) | (farthest < -begin);
-    const bool inside = ((least > bound) | (most < -bound)) & (nearest > begin) &
-      (farthest < surelyBefore);
+    const bool inside =
+      ((least > bound) | (most < -bound)) & (nearest > begin) & (farthest < surelyBefore);
     possible[i] = outside ? 0 : 1 << i;
     sure[i] = inside ? 1 << i : 0;
   }
   SieveResult result;
-  for (int i = 0; i < n; ++i)
-  {
-    result.possible |= static_cast<unsigned int>(possible[i]);
-    result.sure |= static_cast<unsigned int>(sure[i]);
-  }
+  result.possible = unionOf(possible);
+  result.sure = unionOf(sure);
   return result;
 }
 

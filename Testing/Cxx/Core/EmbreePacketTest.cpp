@@ -1,5 +1,5 @@
-// Packets of rays through the Embree structure answer as single rays do, bit by bit: of any fill, on
-// any instruction set, through one level and through two.
+// Packets of rays through the Embree structure answer as single rays do, bit by bit: of any fill,
+// on any instruction set, through one level and through two.
 #include "Rendering/Core/Structures/EmbreeStructure.h"
 #include "StructureChecks.h"
 
@@ -18,8 +18,9 @@ Snapshot scene(EmbreeStructure& embree, bool twoLevels)
   scenes::addPart(s, scenes::torus(48, 24, 1.5, 0.5));
   for (int i = 0; i < 6; ++i)
   {
-    scenes::addPart(s, scenes::sphere(16, 8), glm::scale(glm::translate(glm::dmat4(1.0),
-      { 0.5 * i - 1.5, 0.1 * i, 0.2 * i }), glm::dvec3(0.5)));
+    scenes::addPart(s, scenes::sphere(16, 8),
+      glm::scale(
+        glm::translate(glm::dmat4(1.0), { 0.5 * i - 1.5, 0.1 * i, 0.2 * i }), glm::dvec3(0.5)));
   }
   embree.update(s);
   if (twoLevels)
@@ -56,8 +57,9 @@ TEST_P(EmbreePacket, OfAnyFillEqualsBruteForce)
     }
     for (int i = 0; i < 6; ++i) // longer streams, the last packet partly filled
     {
-      EXPECT_EQ(checks::wrongAnswers(
-                  embree, reference, checks::raysFromOnePoint(s, random, 40 + 7 * i)), 0);
+      EXPECT_EQ(
+        checks::wrongAnswers(embree, reference, checks::raysFromOnePoint(s, random, 40 + 7 * i)),
+        0);
       EXPECT_EQ(
         checks::wrongAnswers(embree, reference, checks::randomRays(s, random, 40 + 7 * i)), 0);
     }

@@ -1,6 +1,6 @@
-// What floating point makes hard for a ray structure: closed meshes aimed at their edges and vertices,
-// near the origin and far from it, and slivers seen at grazing angles. The counts here are for every
-// run of the tests; HRT_TEST_INTENSITY multiplies them.
+// What floating point makes hard for a ray structure: closed meshes aimed at their edges and
+// vertices, near the origin and far from it, and slivers seen at grazing angles. The counts here
+// are for every run of the tests; HRT_TEST_INTENSITY multiplies them.
 #include "Rendering/Core/Structures/EmbreeStructure.h"
 #include "StructureChecks.h"
 
@@ -41,8 +41,8 @@ int leaksOf(const Snapshot& s, const EmbreeStructure& embree, Random& random, in
       leaks += !embree.intersect(ray).valid() + !embree.occluded(ray);
     }
     embree.intersect(rays, hits, 16, RayOrder::Coherent);
-    leaks += static_cast<int>(
-      std::count_if(hits, hits + 16, [](const Hit& hit) { return !hit.valid(); }));
+    leaks +=
+      static_cast<int>(std::count_if(hits, hits + 16, [](const Hit& hit) { return !hit.valid(); }));
   }
   return leaks;
 }
@@ -74,8 +74,8 @@ TEST(EmbreeStress, NothingLeaksOutOfASphere)
 }
 
 // Triangles of 11 x 10 x 0.7 seen from up to 600 at 0.02 to 2 degrees. A ray is aimed at a known
-// point of the plane; whether it meets the triangle is known when that point's weights keep away from
-// zero by more than the aim's own rounding.
+// point of the plane; whether it meets the triangle is known when that point's weights keep away
+// from zero by more than the aim's own rounding.
 TEST(EmbreeStress, SliversAreHitAndMissedRightly)
 {
   Random random(52);
@@ -84,7 +84,8 @@ TEST(EmbreeStress, SliversAreHitAndMissedRightly)
   {
     const glm::dvec3 along = random.direction();
     const glm::dvec3 across = glm::normalize(glm::cross(along, random.direction()));
-    const glm::dvec3 a = random.inBox(20), b = a + 11.0 * along, c = a + 10.3 * along + 0.7 * across;
+    const glm::dvec3 a = random.inBox(20), b = a + 11.0 * along,
+                     c = a + 10.3 * along + 0.7 * across;
     Snapshot s;
     scenes::addPart(s, scenes::makeGeometry({ glm::vec3(a), glm::vec3(b), glm::vec3(c) }));
     EmbreeStructure embree;
@@ -98,8 +99,8 @@ TEST(EmbreeStress, SliversAreHitAndMissedRightly)
       const glm::dvec3 target = exact.a + u * e1 + v * e2;
       const double turn = random(0, 2 * scenes::kPi), angle = glm::radians(random(0.02, 2.0));
       const glm::dvec3 x = glm::normalize(e1), y = glm::cross(normal, x);
-      const glm::dvec3 away = std::cos(angle) * (std::cos(turn) * x + std::sin(turn) * y) +
-        std::sin(angle) * normal;
+      const glm::dvec3 away =
+        std::cos(angle) * (std::cos(turn) * x + std::sin(turn) * y) + std::sin(angle) * normal;
       Ray ray;
       ray.origin = target + random(20, 600) * away;
       ray.direction = target - ray.origin;
@@ -134,7 +135,8 @@ TEST(EmbreeStress, TrianglesOfAllSizesEqualBruteForce)
     }
     Snapshot s;
     scenes::addPart(s, scenes::makeGeometry(positions));
-    scenes::addPart(s, scenes::makeGeometry(positions), glm::rotate(glm::dmat4(1.0), 1.0, { 1, 2, 3 }));
+    scenes::addPart(
+      s, scenes::makeGeometry(positions), glm::rotate(glm::dmat4(1.0), 1.0, { 1, 2, 3 }));
     EmbreeStructure embree;
     scenes::BruteForce reference;
     embree.update(s);

@@ -211,8 +211,8 @@ std::string errorOf(const std::function<void()>& action)
 
 TEST(EmbreeStructure, ErrorsAreThrownWithEmbreesWords)
 {
-  EXPECT_EQ(errorOf([] { EmbreeStructure embree("threads=many"); }),
-    "Embree: no device (unknown error)");
+  EXPECT_EQ(
+    errorOf([] { EmbreeStructure embree("threads=many"); }), "Embree: no device (unknown error)");
   // A hierarchy of a kind that does not exist: the device is made, the build fails.
   EmbreeStructure embree("object_accel=abacus");
   Snapshot s;

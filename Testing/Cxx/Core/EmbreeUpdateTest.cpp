@@ -40,7 +40,8 @@ int wrongAgainstBruteForce(const EmbreeStructure& embree, const Snapshot& s, Ran
 std::shared_ptr<const Geometry> wave(double phase, double height = 0.3)
 {
   std::vector<glm::vec3> positions;
-  const auto point = [&](int i, int j) {
+  const auto point = [&](int i, int j)
+  {
     const double x = i / 10.0 - 1.0, y = j / 10.0 - 1.0;
     return glm::vec3(x, y, height * std::sin(3 * x + phase) * std::cos(2 * y - phase));
   };
@@ -58,8 +59,8 @@ std::shared_ptr<const Geometry> wave(double phase, double height = 0.3)
   return scenes::makeGeometry(positions);
 }
 
-// Sixteen patterns over four parts, as Embree's own update test: bit i of the pattern, part i moves.
-// A part moves rigidly when even, deforms when odd; 1 to 99 rays a step.
+// Sixteen patterns over four parts, as Embree's own update test: bit i of the pattern, part i
+// moves. A part moves rigidly when even, deforms when odd; 1 to 99 rays a step.
 TEST(EmbreeUpdate, EveryPatternOfMovesEqualsBruteForce)
 {
   Random random(31);
@@ -77,7 +78,8 @@ TEST(EmbreeUpdate, EveryPatternOfMovesEqualsBruteForce)
       {
         if ((pattern >> i & 1u) != 0 && step > 0)
         {
-          s.parts[i].localToWorld = glm::rotate(s.parts[i].localToWorld, i % 2 ? 0.0 : 0.3, { 1, 2, 3 });
+          s.parts[i].localToWorld =
+            glm::rotate(s.parts[i].localToWorld, i % 2 ? 0.0 : 0.3, { 1, 2, 3 });
           s.parts[i].geometry = i % 2 ? wave(i + 0.2 * step) : s.parts[i].geometry;
         }
       }
@@ -106,8 +108,9 @@ TEST(EmbreeUpdate, EveryFrameOfAnAnimationEqualsAFreshStructure)
     for (std::size_t i = 1; i < s.parts.size(); ++i)
     {
       const double a = 0.7 * i + 0.05 * frame * (1 + i % 3);
-      s.parts[i].localToWorld = glm::scale(glm::rotate(
-        at({ 5 * std::cos(a), 5 * std::sin(a), 0.02 * i - 2 }), a, { 1, 2, 3 }), glm::dvec3(0.3));
+      s.parts[i].localToWorld = glm::scale(
+        glm::rotate(at({ 5 * std::cos(a), 5 * std::sin(a), 0.02 * i - 2 }), a, { 1, 2, 3 }),
+        glm::dvec3(0.3));
     }
     s.origin = { 0.1 * frame, 0, -0.05 * frame };
     report = embree.update(s);
@@ -125,8 +128,8 @@ TEST(EmbreeUpdate, PartsThatComeGoRestAndHideEqualBruteForce)
 {
   Random random(33);
   const std::shared_ptr<const Geometry> meshes[] = { scenes::sphere(10, 5), wave(0), wave(1),
-    scenes::quad({ -1, -1, 0 }, { 1, -1, 0 }, { 1, 1, 0 }, { -1, 1, 0 }),
-    scenes::makeGeometry({}), scenes::torus(12, 6, 1, 0.4) };
+    scenes::quad({ -1, -1, 0 }, { 1, -1, 0 }, { 1, 1, 0 }, { -1, 1, 0 }), scenes::makeGeometry({}),
+    scenes::torus(12, 6, 1, 0.4) };
   Snapshot s;
   std::uint64_t key = 1000;
   EmbreeStructure embree;
@@ -138,7 +141,8 @@ TEST(EmbreeUpdate, PartsThatComeGoRestAndHideEqualBruteForce)
       if (dice == 0 || s.parts.size() < 4)
       {
         scenes::addPart(s, meshes[random.below(6)], at(random.inBox(1.5))).key = ++key;
-        std::rotate(s.parts.begin() + random.below(s.parts.size()), s.parts.end() - 1, s.parts.end());
+        std::rotate(
+          s.parts.begin() + random.below(s.parts.size()), s.parts.end() - 1, s.parts.end());
       }
       Part& part = s.parts[random.below(s.parts.size())];
       part.localToWorld[3] += glm::dvec4(random.inBox(dice == 1 ? 0.3 : 0.0), 0);
@@ -208,7 +212,8 @@ TEST(EmbreeUpdate, BuildsOnlyWhatIsNew)
   scenes::addPart(s, ball, at({ 5, 0, 0 }));
   scenes::addPart(s, ring, at({ 0, 9, 0 }));
   EmbreeStructure embree;
-  const auto expectReport = [&](std::uint64_t built, std::uint64_t reused, bool parts) {
+  const auto expectReport = [&](std::uint64_t built, std::uint64_t reused, bool parts)
+  {
     const StructureReport report = embree.update(s);
     EXPECT_EQ(report.built, built);
     EXPECT_EQ(report.reused, reused);
@@ -246,8 +251,8 @@ TEST(EmbreeUpdate, SkewedPartsEqualBruteForce)
   Snapshot s;
   for (double thin : { 1.0, 1e-3, 1e-6, 1e-9, 1e-12 })
   {
-    scenes::addPart(s, scenes::torus(20, 10, 1.0, 0.4), glm::scale(glm::rotate(glm::dmat4(1.0),
-      thin, { 1, 2, 3 }), { 1.0, thin, 1.0 }));
+    scenes::addPart(s, scenes::torus(20, 10, 1.0, 0.4),
+      glm::scale(glm::rotate(glm::dmat4(1.0), thin, { 1, 2, 3 }), { 1.0, thin, 1.0 }));
   }
   EmbreeStructure embree;
   for (int step = 0; step < 6; ++step)
@@ -268,8 +273,8 @@ TEST(EmbreeUpdate, AHundredThousandParts)
   const auto triangle = scenes::makeGeometry({ { 0, 0, 0 }, { 0.1, 0, 0 }, { 0, 0.1, 0 } });
   for (int i = 0; i < 100000; ++i)
   {
-    scenes::addPart(s, triangle,
-      glm::rotate(at(random.inBox(2.0)), random(0, 6), random.direction()));
+    scenes::addPart(
+      s, triangle, glm::rotate(at(random.inBox(2.0)), random(0, 6), random.direction()));
   }
   EmbreeStructure embree;
   EXPECT_EQ(embree.update(s).built, 1u);

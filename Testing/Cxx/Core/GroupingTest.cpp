@@ -175,7 +175,7 @@ TEST(Grouping, ADeformedPartLeavesAndIsMarked)
 {
   Snapshot s = row(6, kBall);
   const Grouping first = groupParts(s, {});
-  s.parts[0].geometry = scenes::sphere(16, 8);  // as many triangles
+  s.parts[0].geometry = scenes::sphere(16, 8); // as many triangles
   s.parts[1].geometry = scenes::sphere(18, 8);
   const Grouping second = groupParts(s, first);
   EXPECT_EQ(second.parts[0].place, Place::Alone);

@@ -1,5 +1,5 @@
-// Rays that are hard to get right, and the comparison of a structure's answers with another's, bit by
-// bit: for the tests of ray structures.
+// Rays that are hard to get right, and the comparison of a structure's answers with another's, bit
+// by bit: for the tests of ray structures.
 #pragma once
 
 #include "Scenes.h"
@@ -30,14 +30,14 @@ inline glm::dvec3 randomCorner(const Snapshot& s, scenes::Random& random)
   return random.below(2) ? c.a : 0.5 * (c.a + c.b);
 }
 
-// Half of the rays at random, half at vertices and edges, where single precision fails; some that end
-// early and some that leave from a triangle.
+// Half of the rays at random, half at vertices and edges, where single precision fails; some that
+// end early and some that leave from a triangle.
 inline Ray randomRay(const Snapshot& s, scenes::Random& random, int i, double half = 3.0)
 {
   Ray ray;
   ray.origin = random.inBox(half);
-  ray.direction = i % 2 && s.triangleCount > 0 ? randomCorner(s, random) - ray.origin
-                                               : random.direction();
+  ray.direction =
+    i % 2 && s.triangleCount > 0 ? randomCorner(s, random) - ray.origin : random.direction();
   if (i % 3 == 0)
   {
     ray.tMaximum = random(0.0, 4.0);
@@ -68,7 +68,8 @@ inline std::vector<Ray> raysFromOnePoint(const Snapshot& s, scenes::Random& rand
   for (Ray& ray : rays)
   {
     ray.origin = eye;
-    ray.direction = random.below(3) ? target + random.inBox(0.05) - eye : randomCorner(s, random) - eye;
+    ray.direction =
+      random.below(3) ? target + random.inBox(0.05) - eye : randomCorner(s, random) - eye;
   }
   return rays;
 }
