@@ -70,7 +70,7 @@ def test_robots_are_traced_and_their_animation_rebuilds_nothing(render, data_fil
     assert importer.GetNumberOfTriangles() == TRIANGLES
     renderer, rt = traced(importer)
     pictures = []
-    for time in (0.0, 25.0):
+    for time in (0.0, 25.0, 25.05):
         importer.SetTime(time)
         pictures.append(render(renderer, (320, 240)).astype(int))
         report = statistics(rt)
@@ -88,8 +88,11 @@ def test_robots_are_traced_and_their_animation_rebuilds_nothing(render, data_fil
         assert len(report["left_to_vtk"]) <= translucent(importer)
         assert report["rays"]["reflection"]["traced"] > 0
         assert report["rays"]["shadow"]["traced"] > 0
-        if time > 0.0:
-            assert report["structure"]["built"] == 0, "only matrices have moved"
+        if time > 25.0:
+            # Parts that start to move get hierarchies of their own once; from then on only matrices
+            # change, and the one flat hierarchy that the smallest moving parts share.
+            assert report["structure"]["built"] <= 1
+            assert report["structure"]["reused"] > 100
 
     for picture in pictures:
         # Inside a city: nothing shows the black background between the houses, nothing is all white.
@@ -101,6 +104,7 @@ def test_robots_are_traced_and_their_animation_rebuilds_nothing(render, data_fil
     red, blue = pictures[0][..., 0], pictures[0][..., 2]
     assert 0.05 < (blue > red + 40).mean() < 0.3
     assert np.abs(pictures[1] - pictures[0]).mean() > 10
+    assert 0 < np.abs(pictures[2] - pictures[1]).mean() < 10
 
 
 @pytest.mark.expects_vtk_messages()

@@ -6,6 +6,7 @@
 #include "Rendering/Core/Structures/Grouping.h"
 
 #include <algorithm>
+#include <cmath>
 #include <stdexcept>
 
 namespace hrt
@@ -311,23 +312,41 @@ struct Hierarchy::Builder
     return leaf;
   }
 
+  // Triangles that Embree cannot bin, not finite or beyond its largest coordinate, are left out. The
+  // scene's door refuses them; a snapshot made otherwise must do no harm either.
   std::vector<RTCBuildPrimitive> primitives() const
   {
-    std::vector<RTCBuildPrimitive> result(this->Triangles.size());
-    for (std::size_t i = 0; i < result.size(); ++i)
+    std::vector<RTCBuildPrimitive> result;
+    result.reserve(this->Triangles.size());
+    for (std::size_t i = 0; i < this->Triangles.size(); ++i)
     {
       const std::array<glm::vec3, 3>& c = this->Triangles[i].corner;
-      const glm::vec3 lower = glm::min(c[0], glm::min(c[1], c[2]));
-      const glm::vec3 upper = glm::max(c[0], glm::max(c[1], c[2]));
-      result[i] = { lower.x, lower.y, lower.z, 0, upper.x, upper.y, upper.z,
-        static_cast<unsigned int>(i) };
+      if (isBinnable(c[0]) && isBinnable(c[1]) && isBinnable(c[2]))
+      {
+        const glm::vec3 lower = glm::min(c[0], glm::min(c[1], c[2]));
+        const glm::vec3 upper = glm::max(c[0], glm::max(c[1], c[2]));
+        result.push_back({ lower.x, lower.y, lower.z, 0, upper.x, upper.y, upper.z,
+          static_cast<unsigned int>(i) });
+      }
     }
     return result;
+  }
+
+  static bool isBinnable(const glm::vec3& point)
+  {
+    // Embree's FLT_LARGE, the square root of the largest float but for a factor of ten.
+    constexpr float kLargest = 1.844e18f;
+    return std::abs(point.x) <= kLargest && std::abs(point.y) <= kLargest &&
+      std::abs(point.z) <= kLargest;
   }
 
   void run(Device& device)
   {
     std::vector<RTCBuildPrimitive> boxes = this->primitives();
+    if (boxes.empty())
+    {
+      return; // Embree would make a leaf of nothing
+    }
     RTCBuildArguments arguments = rtcDefaultBuildArguments();
     arguments.maxDepth = kDeepest;
     arguments.sahBlockSize = kLanes;

@@ -76,11 +76,16 @@ struct TraversalRay
 // A finite ray whose direction is not zero, by the exact kernel's rule: some component is normal.
 inline bool isUsable(const glm::dvec3& origin, const glm::dvec3& direction)
 {
-  // Anything times zero is zero, unless it is infinite or no number.
-  const glm::dvec3 zeros = 0.0 * origin + 0.0 * direction;
+  // Asked without arithmetic, which would raise floating-point exceptions in hosts that trap them.
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    if (!std::isfinite(origin[axis]) || !std::isfinite(direction[axis]))
+    {
+      return false;
+    }
+  }
   const glm::dvec3 lengths = glm::abs(direction);
-  return zeros.x + zeros.y + zeros.z == 0.0 &&
-    std::max({ lengths.x, lengths.y, lengths.z }) >= std::numeric_limits<double>::min();
+  return std::max({ lengths.x, lengths.y, lengths.z }) >= std::numeric_limits<double>::min();
 }
 
 // The direction in units of its longest component. A reciprocal saves two divisions, but that of a
