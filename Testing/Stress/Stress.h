@@ -5,6 +5,7 @@
 #pragma once
 
 #include "Rendering/Core/Structures/EmbreeStructure.h"
+#include "Rendering/Core/Structures/KdTreeStructure.h"
 #include "Rendering/Core/Structures/Structure.h"
 #include "Testing/Cxx/Core/Scenes.h"
 
@@ -43,6 +44,7 @@ std::unique_ptr<Structure> makeStructure()
 // One line a structure.
 inline const Engine kEngines[] = {
   { "Embree", &makeStructure<EmbreeStructure> },
+  { "KdTree", &makeStructure<KdTreeStructure> },
 };
 
 inline std::ostream& operator<<(std::ostream& out, const Engine& engine)
