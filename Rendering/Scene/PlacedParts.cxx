@@ -73,8 +73,10 @@ MatrixState normaliseMatrix(glm::dmat4& localToWorld)
   {
     localToWorld /= w;
   }
-  return isFinite(localToWorld) && !isFlat(localToWorld) ? MatrixState::Good
-                                                         : MatrixState::Singular;
+  // Scales near the ends of the number range have an inverse, but none that a double can hold.
+  return isFinite(localToWorld) && !isFlat(localToWorld) && isFinite(glm::inverse(localToWorld))
+    ? MatrixState::Good
+    : MatrixState::Singular;
 }
 
 } // namespace scene
