@@ -11,10 +11,14 @@
 #include <tbb/parallel_for.h>
 #include <tbb/parallel_invoke.h>
 
+#include <algorithm>
 #include <chrono>
+#include <cmath>
+#include <cstdint>
 #include <mutex>
 #include <stdexcept>
 #include <thread>
+#include <vector>
 
 namespace hrt
 {
@@ -41,6 +45,15 @@ struct Branch
   std::unique_ptr<Branch> below, above;
   Piece piece;
 };
+
+// Coordinates that can be ordered and clipped. The scene's door refuses all others, by the same bound;
+// a snapshot made otherwise must do no harm: its triangles are left out.
+bool isOrderly(const glm::vec3& point)
+{
+  constexpr float kLargest = 1.844e18f;
+  return std::abs(point.x) <= kLargest && std::abs(point.y) <= kLargest &&
+    std::abs(point.z) <= kLargest;
+}
 
 } // namespace
 
@@ -119,15 +132,25 @@ void KdTreeBuilder::advance(double share)
 KdTreeBuilder::OwnedCell KdTreeBuilder::rootCell() const
 {
   OwnedCell cell;
-  cell.triangles = this->Count;
-  cell.reserve(this->Count);
-  for (std::size_t i = 0; i < 3 * std::size_t(this->Count); ++i)
+  std::vector<std::uint32_t> admitted;
+  admitted.reserve(this->Count);
+  for (std::uint32_t i = 0; i < this->Count; ++i)
   {
-    cell.box.include(this->Corners[i] + 0.0f); // -0 becomes +0, see KdTreeClip.cpp
+    const glm::vec3* c = this->Corners + 3 * std::size_t(i);
+    if (isOrderly(c[0]) && isOrderly(c[1]) && isOrderly(c[2]))
+    {
+      admitted.push_back(i);
+      for (int k = 0; k < 3; ++k)
+      {
+        cell.box.include(c[k] + 0.0f); // -0 becomes +0, see KdTreeClip.cpp
+      }
+    }
   }
+  cell.triangles = static_cast<std::uint32_t>(admitted.size());
+  cell.reserve(cell.triangles);
   tbb::parallel_for(0, 3, [&](int axis) {
     KdEventList& events = cell.events[axis];
-    for (std::uint32_t i = 0; i < this->Count; ++i)
+    for (const std::uint32_t i : admitted)
     {
       const glm::vec3* c = this->Corners + 3 * std::size_t(i);
       const float a = c[0][axis] + 0.0f, b = c[1][axis] + 0.0f, d = c[2][axis] + 0.0f;
@@ -413,7 +436,7 @@ std::unique_ptr<const KdTree> KdTreeBuilder::build()
   OwnedCell cell = this->rootCell();
   tree->Box = cell.box;
   const glm::vec3 most = glm::max(glm::abs(cell.box.lower), glm::abs(cell.box.upper));
-  tree->Reach = this->Count ? std::max({ most.x, most.y, most.z }) : 0.0;
+  tree->Reach = cell.triangles ? std::max({ most.x, most.y, most.z }) : 0.0;
   Branch root;
   this->buildBranch(root, std::move(cell), 1.0);
   if (this->aborted())
