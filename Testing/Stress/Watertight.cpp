@@ -186,7 +186,9 @@ TEST_P(Watertight, Row16GridThroughASharedEdge)
   for (std::size_t fold = 0; fold < folds; ++fold)
   {
     const glm::vec3 a(random.inBox(1.0)), b(random.inBox(1.0));
-    const glm::vec3 side(0.5 * random.direction());
+    // Straight across, so that the two triangles lie on either side of the edge for every ray below.
+    const glm::vec3 side(
+      0.5 * glm::normalize(glm::cross(glm::dvec3(b) - glm::dvec3(a), random.direction())));
     const glm::vec3 middle = 0.5f * (a + b);
     const glm::vec3 lift(random.inBox(0.1));
     Snapshot snapshot;
