@@ -4,7 +4,6 @@ effects off the picture of a scene of everything equals VTK's own."""
 import numpy as np
 import pytest
 import scenes
-import vtkmodules.vtkRenderingImage  # noqa: F401  (image actors)
 import vtkmodules.vtkRenderingVolumeOpenGL2  # noqa: F401
 from vtkhybrid import statistics, vtkHybridMaterial, vtkHybridRayTracingPass
 from vtkmodules.vtkCommonDataModel import vtkPiecewiseFunction
