@@ -57,7 +57,8 @@ FrameRenderer::FrameRenderer(vtkOpenGLRenderWindow* window)
 }
 
 //------------------------------------------------------------------------------
-Caches FrameRenderer::currentCaches(const Snapshot& snapshot, const Settings& settings)
+Caches FrameRenderer::currentCaches(
+  const Snapshot& snapshot, const Facts& facts, const Settings& settings)
 {
   const int width = snapshot.camera.width;
   const int height = snapshot.camera.height;
@@ -71,7 +72,6 @@ Caches FrameRenderer::currentCaches(const Snapshot& snapshot, const Settings& se
   {
     caches.primaryImage = false;
   }
-  const Facts facts = gatherFacts(snapshot);
   std::vector<bool> wanted = facts.lightCanCast;
   for (std::size_t i = 0; i < wanted.size(); ++i)
   {
@@ -95,9 +95,10 @@ std::string FrameRenderer::render(const std::shared_ptr<const Snapshot>& snapsho
   this->Statistics = FrameStatistics();
   this->Scene = snapshot;
   const SettingsChanges settingsChanges = compareSettings(this->LastSettings, settings);
-  const Caches caches = this->currentCaches(*snapshot, settings);
+  const Facts facts = gatherFacts(*snapshot);
+  const Caches caches = this->currentCaches(*snapshot, facts, settings);
   FramePlan& plan = this->Statistics.plan;
-  plan = planFrame(gatherFacts(*snapshot), settings, settingsChanges, changes, caches);
+  plan = planFrame(facts, settings, settingsChanges, changes, caches);
 
   std::string error;
   for (std::size_t i = 0; i < kStageCount && error.empty(); ++i)

@@ -65,7 +65,8 @@ public:
   bool readShadow(int light, std::vector<float>& share);
 
 private:
-  Caches currentCaches(const Snapshot& snapshot, const Settings& settings);
+  Caches currentCaches(
+    const Snapshot& snapshot, const Facts& facts, const Settings& settings);
   std::string runStage(Stage stage, const Snapshot& snapshot, const Settings& settings);
   std::string uploadGeometry(const Snapshot& snapshot);
   std::string drawShadowMaps(const Snapshot& snapshot);

@@ -4,6 +4,7 @@
 // refused.
 #pragma once
 
+#include "Rendering/Core/Geometry/Coordinates.h" // the largest coordinate that is not refused
 #include "Rendering/Core/Snapshot.h"
 
 #include "vtkType.h"
@@ -18,11 +19,6 @@ namespace hrt
 {
 namespace scene
 {
-
-// Coordinates beyond this are refused: it is Embree's own limit. Intersection tests multiply two
-// coordinates and add a few such products; (1.844e18)^2 = 3.4e36 leaves a factor of 100 to the
-// largest float, 3.4e38.
-inline constexpr double kLargestCoordinate = 1.844e18;
 
 struct SourceTriangle
 {

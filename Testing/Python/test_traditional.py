@@ -150,15 +150,12 @@ def test_near_plane_cuts_as_the_rasteriser_does(render):
 
 def test_accelerators_show_the_same_picture_to_the_last_bit(render):
     renderer = lively()
-    rt = vtkHybridRayTracingPass()
-    choose(rt, "traditional")
-    renderer.SetPass(rt)
     pictures = []
-    for accelerator in ("Embree", "KdTree", "Embree"):
+    for accelerator in ("Embree", "KdTree"):
+        rt = vtkHybridRayTracingPass()
+        choose(rt, "traditional")
         getattr(rt, "SetAcceleratorTo" + accelerator)()
-        renderer.GetActiveCamera().Azimuth(1e-9)  # a new picture, by the new structure
+        renderer.SetPass(rt)
         pictures.append(render(renderer, (300, 200)))
         assert statistics(rt)["stages"]["structure"]["ran"]
-    for picture in pictures[1:]:
-        # The camera has moved by less than any rounding of a colour shows.
-        assert np.count_nonzero(picture != pictures[0]) <= 3
+    assert (pictures[0] == pictures[1]).all()

@@ -3,6 +3,8 @@
 // which one runs changes the time and nothing else.
 #include "Rendering/Core/Structures/EmbreeHierarchy.h"
 
+#include "Rendering/Core/Geometry/Coordinates.h"
+
 #include "Rendering/Core/Structures/Grouping.h"
 
 #include <algorithm>
@@ -321,7 +323,7 @@ struct Hierarchy::Builder
     for (std::size_t i = 0; i < this->Triangles.size(); ++i)
     {
       const std::array<glm::vec3, 3>& c = this->Triangles[i].corner;
-      if (isBinnable(c[0]) && isBinnable(c[1]) && isBinnable(c[2]))
+      if (isAdmissible(c[0]) && isAdmissible(c[1]) && isAdmissible(c[2]))
       {
         const glm::vec3 lower = glm::min(c[0], glm::min(c[1], c[2]));
         const glm::vec3 upper = glm::max(c[0], glm::max(c[1], c[2]));
@@ -330,14 +332,6 @@ struct Hierarchy::Builder
       }
     }
     return result;
-  }
-
-  static bool isBinnable(const glm::vec3& point)
-  {
-    // Embree's FLT_LARGE, the square root of the largest float but for a factor of ten.
-    constexpr float kLargest = 1.844e18f;
-    return std::abs(point.x) <= kLargest && std::abs(point.y) <= kLargest &&
-      std::abs(point.z) <= kLargest;
   }
 
   void run(Device& device)

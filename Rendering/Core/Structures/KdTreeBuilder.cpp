@@ -4,6 +4,7 @@
 // triangles are finished by one thread without asking the heap. The number is fixed, and the finished
 // pieces are laid out in the order of the tree: so the result depends neither on the number of threads
 // nor on their luck.
+#include "Rendering/Core/Geometry/Coordinates.h"
 #include "Rendering/Core/Structures/KdTreeSplit.h"
 
 #include <tbb/blocked_range.h>
@@ -45,15 +46,6 @@ struct Branch
   std::unique_ptr<Branch> below, above;
   Piece piece;
 };
-
-// Coordinates that can be ordered and clipped. The scene's door refuses all others, by the same bound;
-// a snapshot made otherwise must do no harm: its triangles are left out.
-bool isOrderly(const glm::vec3& point)
-{
-  constexpr float kLargest = 1.844e18f;
-  return std::abs(point.x) <= kLargest && std::abs(point.y) <= kLargest &&
-    std::abs(point.z) <= kLargest;
-}
 
 } // namespace
 
@@ -137,7 +129,9 @@ KdTreeBuilder::OwnedCell KdTreeBuilder::rootCell() const
   for (std::uint32_t i = 0; i < this->Count; ++i)
   {
     const glm::vec3* c = this->Corners + 3 * std::size_t(i);
-    if (isOrderly(c[0]) && isOrderly(c[1]) && isOrderly(c[2]))
+    // Others cannot be ordered and clipped. The scene's door refuses them; a snapshot made otherwise
+    // must do no harm.
+    if (isAdmissible(c[0]) && isAdmissible(c[1]) && isAdmissible(c[2]))
     {
       admitted.push_back(i);
       for (int k = 0; k < 3; ++k)
