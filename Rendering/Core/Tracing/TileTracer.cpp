@@ -21,9 +21,6 @@ constexpr float kLeastWeight = 1.0f / 512.0f;
 // opacities would have to be below 9 % each for the rest to weigh more than kLeastWeight.
 constexpr int kMostLayers = 64;
 
-// Pixels along a side of the blocks whose rays are neighbours in a stream: 16 rays, one packet.
-constexpr int kBlock = 4;
-
 float largest(const glm::vec3& v)
 {
   return std::max({ v.x, v.y, v.z });
@@ -54,10 +51,12 @@ bool TracedFrame::isMirror(const Material& material) const
     !this->isGlass(material);
 }
 
-Ray TracedFrame::primaryRay(int column, int row) const
+Ray TracedFrame::primaryRay(std::uint32_t pixel) const
 {
-  const double x = (column + 0.5) / this->snapshot.camera.width * 2.0 - 1.0;
-  const double y = (row + 0.5) / this->snapshot.camera.height * 2.0 - 1.0;
+  const Camera& camera = this->snapshot.camera;
+  const auto width = static_cast<std::uint32_t>(camera.width);
+  const double x = (pixel % width + 0.5) / camera.width * 2.0 - 1.0;
+  const double y = (pixel / width + 0.5) / camera.height * 2.0 - 1.0;
   Ray ray;
   ray.origin = this->rays.origin(x, y);
   ray.direction = glm::normalize(this->rays.direction(x, y));
@@ -69,32 +68,17 @@ TileTracer::TileTracer(const TracedFrame& frame)
 {
 }
 
-void TileTracer::trace(int left, int bottom, int width, int height, Wanted wanted,
+void TileTracer::trace(const std::vector<std::uint32_t>& pixels, Wanted wanted,
   const std::uint32_t* ids, SecondaryImage& image, SecondaryResult& result)
 {
-  const std::size_t pixels = std::size_t(width) * height;
-  this->Sums.assign(pixels, glm::vec3(0.0f));
+  this->Sums.assign(pixels.size(), glm::vec3(0.0f));
   // No hit: nothing to add. In the whole picture alpha 0 says so, in the secondary image the
   // primary colour stays.
-  this->Alphas.assign(pixels, wanted == Wanted::Everything ? 0.0f : 1.0f);
+  this->Alphas.assign(pixels.size(), wanted == Wanted::Everything ? 0.0f : 1.0f);
   this->Counters = RayCounters();
-  const auto pixelAt = [&](std::size_t i) {
-    return (bottom + i / width) * image.width + left + i % width;
-  };
-  for (int by = 0; by < height; by += kBlock)
+  for (std::size_t i = 0; i < pixels.size(); ++i)
   {
-    for (int bx = 0; bx < width; bx += kBlock)
-    {
-      for (int y = by; y < std::min(by + kBlock, height); ++y)
-      {
-        for (int x = bx; x < std::min(bx + kBlock, width); ++x)
-        {
-          const std::size_t i = std::size_t(y) * width + x;
-          this->start(static_cast<std::uint32_t>(i), left + x, bottom + y, ids[pixelAt(i)],
-            wanted, result);
-        }
-      }
-    }
+    this->start(static_cast<std::uint32_t>(i), pixels[i], ids[pixels[i]], wanted, result);
   }
   // Neighbours' first shadow and mirror rays run side by side; later ones scatter.
   RayOrder order = RayOrder::Coherent;
@@ -109,15 +93,15 @@ void TileTracer::trace(int left, int bottom, int width, int height, Wanted wante
     this->Frame.lighting.flush(this->Shadows, order, this->Sums);
     order = RayOrder::Incoherent;
   }
-  for (std::size_t i = 0; i < pixels; ++i)
+  for (std::size_t i = 0; i < pixels.size(); ++i)
   {
-    image.pixels[pixelAt(i)] = glm::vec4(this->Sums[i], this->Alphas[i]);
+    image.pixels[pixels[i]] = glm::vec4(this->Sums[i], this->Alphas[i]);
   }
   result.rays += this->Counters;
 }
 
 // The surface that a pixel shows, as the visibility engine has found it.
-void TileTracer::start(std::uint32_t pixel, int column, int row, std::uint32_t id, Wanted wanted,
+void TileTracer::start(std::uint32_t index, std::uint32_t pixel, std::uint32_t id, Wanted wanted,
   SecondaryResult& result)
 {
   if (id == 0)
@@ -138,7 +122,7 @@ void TileTracer::start(std::uint32_t pixel, int column, int row, std::uint32_t i
   {
     return;
   }
-  const Ray ray = this->Frame.primaryRay(column, row);
+  const Ray ray = this->Frame.primaryRay(pixel);
   Hit hit;
   if (!this->Frame.surfaces.primaryHit(triangle, ray, hit))
   {
@@ -147,14 +131,14 @@ void TileTracer::start(std::uint32_t pixel, int column, int row, std::uint32_t i
   result.pixels += glass || mirror ? 1 : 0;
   const SurfacePoint point = this->Frame.surfaces.at(hit, ray.direction);
   Path eye;
-  eye.pixel = pixel;
+  eye.pixel = index;
   if (wanted == Wanted::SecondaryOnly && mirror)
   {
-    this->Alphas[pixel] = 1.0f - material.reflectance;
+    this->Alphas[index] = 1.0f - material.reflectance;
     this->startMirror(point, ray.direction, eye);
     return;
   }
-  this->Alphas[pixel] = wanted == Wanted::Everything ? 1.0f : 0.0f;
+  this->Alphas[index] = wanted == Wanted::Everything ? 1.0f : 0.0f;
   // As VTK does for every projection, the viewer of a directly seen surface is taken to be at the
   // view coordinates' origin.
   const glm::dvec3 toViewer = glm::normalize(this->Frame.viewer - point.position);

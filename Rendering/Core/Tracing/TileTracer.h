@@ -24,8 +24,8 @@ struct TracedFrame
   bool isGlass(const Material& material) const;
   bool isMirror(const Material& material) const; // glass comes first
 
-  // The primary ray through the centre of a pixel; unit direction.
-  Ray primaryRay(int column, int row) const;
+  // The primary ray through the centre of a pixel, row 0 at the bottom; unit direction.
+  Ray primaryRay(std::uint32_t pixel) const;
 
   const Snapshot& snapshot;
   const Structure& structure;
@@ -41,15 +41,10 @@ class TileTracer
 public:
   explicit TileTracer(const TracedFrame& frame);
 
-  // Which light of a pixel is wanted.
-  enum class Wanted
-  {
-    Everything,   // the finished colour, alpha 1
-    SecondaryOnly // what is to be added to a primary image: see SecondaryImage
-  };
-
-  // Pixels from (left, bottom) on, width x height of them; `ids` and `image` are of the whole picture.
-  void trace(int left, int bottom, int width, int height, Wanted wanted, const std::uint32_t* ids,
+  // The pixels with the given numbers in the whole picture, which `ids` and `image` are of. A pixel's
+  // result depends on no other pixel of the list; neighbours in it should be neighbours in the
+  // picture.
+  void trace(const std::vector<std::uint32_t>& pixels, Wanted wanted, const std::uint32_t* ids,
     SecondaryImage& image, SecondaryResult& result);
 
 private:
@@ -57,7 +52,7 @@ private:
   struct Path
   {
     glm::vec3 weight{ 1.0f }; // share of its radiance in the pixel
-    std::uint32_t pixel = 0;  // within the tile
+    std::uint32_t pixel = 0;  // index into the tile's list
     int bounces = 0;          // reflections and refractions so far
     int layers = 0;           // translucent surfaces passed since the last of them
   };
@@ -73,7 +68,7 @@ private:
     }
   };
 
-  void start(std::uint32_t pixel, int column, int row, std::uint32_t id, Wanted wanted,
+  void start(std::uint32_t index, std::uint32_t pixel, std::uint32_t id, Wanted wanted,
     SecondaryResult& result);
   void startMirror(const SurfacePoint& point, const glm::dvec3& direction, const Path& path);
   void arrive(const SurfacePoint& point, const glm::dvec3& direction,

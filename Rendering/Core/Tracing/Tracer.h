@@ -80,11 +80,26 @@ struct SecondaryImage
   std::vector<glm::vec4> pixels;
 };
 
+// Which light of a pixel is wanted.
+enum class Wanted : std::uint8_t
+{
+  Everything,   // the finished colour, alpha 1; (0, 0, 0, 0) where there is no hit
+  SecondaryOnly // what is to be added to a primary image: see SecondaryImage
+};
+
 struct SecondaryResult
 {
   RayCounters rays;
   std::uint64_t pixels = 0;     // that show a mirror or glass
   std::uint64_t invalidIds = 0;
+
+  SecondaryResult& operator+=(const SecondaryResult& o)
+  {
+    this->rays += o.rays;
+    this->pixels += o.pixels;
+    this->invalidIds += o.invalidIds;
+    return *this;
+  }
 };
 
 // Traces reflection and refraction for every pixel whose triangle belongs to a mirror or to glass.
