@@ -17,18 +17,6 @@ namespace gl
 namespace
 {
 
-TracerSettings tracerSettings(const Settings& settings)
-{
-  TracerSettings tracing;
-  tracing.maximumDepth = settings.maximumDepth;
-  tracing.shadows = settings.shadows != ShadowMode::Off;
-  // Shadow maps know nothing of translucent casters; a mirror must not show what is not there.
-  tracing.tintedShadows = settings.primaryShading == PrimaryShading::CPU;
-  tracing.reflections = settings.reflections;
-  tracing.refractions = settings.refractions;
-  return tracing;
-}
-
 std::unique_ptr<Structure> makeStructure(Accelerator accelerator)
 {
   if (accelerator == Accelerator::KdTree)
@@ -75,7 +63,7 @@ Caches FrameRenderer::currentCaches(
   std::vector<bool> wanted = facts.lightCanCast;
   for (std::size_t i = 0; i < wanted.size(); ++i)
   {
-    wanted[i] = wanted[i] && settings.shadows == ShadowMode::ShadowMaps && facts.anyCaster;
+    wanted[i] = wanted[i] && settings.usesShadowMaps() && facts.anyCaster;
   }
   const std::vector<bool> present =
     this->Shadows.prepare(snapshot, wanted, settings.shadowMapResolution);
@@ -125,6 +113,7 @@ std::string FrameRenderer::render(const std::shared_ptr<const Snapshot>& snapsho
     this->Statistics.milliseconds[static_cast<std::size_t>(Stage::Blit)] =
       std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
   }
+  this->Tracer.reset(); // when a stage between failed
   this->LastSettings = settings;
   this->Valid = error.empty() ? cachesAfter(plan, settings, settingsChanges, changes, caches) : Caches();
   return error;
@@ -145,16 +134,18 @@ std::string FrameRenderer::runStage(
     case Stage::Visibility:
       return settings.visibility == Visibility::RayCasting ? this->castPrimary(snapshot)
                                                            : this->drawVisibility(snapshot);
+    case Stage::ShadowReadBack:
+      return this->Shadows.readBack(this->Pool.window(), this->Statistics.bytesReadBack)
+        ? std::string()
+        : "the shadow maps could not be read back";
     case Stage::ReadBack:
-      this->ReadBack.begin(this->Hits);
-      this->ReadBackBegun = true;
-      return {};
+      return this->readBackAndTrace(snapshot, settings);
     case Stage::PrimaryShading:
-      return settings.primaryShading == PrimaryShading::CPU
-        ? this->trace(&traceImage, snapshot, settings, this->Caster.image())
+      return settings.shadesOnCPU()
+        ? this->finishTracing(snapshot, settings, this->Caster.image())
         : this->shadePrimary(snapshot);
     case Stage::SecondaryRays:
-      return this->trace(&traceSecondary, snapshot, settings, this->Secondary);
+      return this->finishTracing(snapshot, settings, this->Secondary);
     case Stage::Blit:
     case Stage::Count:
       break;
@@ -235,18 +226,29 @@ std::string FrameRenderer::updateStructure(const Snapshot& snapshot, const Setti
 }
 
 //------------------------------------------------------------------------------
-const std::vector<std::uint32_t>& FrameRenderer::hostIds()
+bool FrameRenderer::readIds(const std::function<void(int)>& rowsReady)
 {
-  if (this->ReadBackBegun)
+  const bool done =
+    this->ReadBack.read(this->Pool.window(), this->Hits, this->Host.ids, rowsReady);
+  this->Statistics.bytesReadBack += this->Host.ids.size() * sizeof(this->Host.ids[0]);
+  return done;
+}
+
+//------------------------------------------------------------------------------
+TracerSettings FrameRenderer::tracerSettings(const Settings& settings) const
+{
+  TracerSettings tracing;
+  tracing.maximumDepth = settings.maximumDepth;
+  tracing.shadows = settings.shadows != ShadowMode::Off;
+  if (settings.shadesOnCPU() && settings.usesShadowMaps())
   {
-    this->ReadBackBegun = false;
-    this->Statistics.bytesReadBack += this->ReadBack.bytes();
-    if (!this->ReadBack.finish(this->Host.ids))
-    {
-      this->Host.ids.clear();
-    }
+    tracing.shadowMaps = this->Shadows.hostTables(*this->Scene);
   }
-  return this->Host.ids;
+  // Shadow maps know nothing of translucent casters; a mirror must not show what is not there.
+  tracing.tintedShadows = settings.usesShadowRays();
+  tracing.reflections = settings.reflections;
+  tracing.refractions = settings.refractions;
+  return tracing;
 }
 
 //------------------------------------------------------------------------------
@@ -267,33 +269,64 @@ std::string FrameRenderer::castPrimary(const Snapshot& snapshot)
 }
 
 //------------------------------------------------------------------------------
-std::string FrameRenderer::trace(Tracing* function, const Snapshot& snapshot,
-  const Settings& settings, Image2D& target)
+void FrameRenderer::beginTracing(const Snapshot& snapshot, const Settings& settings)
 {
-  const std::vector<std::uint32_t>& ids = this->hostIds();
-  if (ids.empty())
+  if (!this->Rays) // neither shadows nor mirrors: an empty structure will not be asked
   {
-    return "the object intersection buffer could not be read back";
+    this->Rays = makeStructure(settings.accelerator);
+    this->RaysKind = settings.accelerator;
   }
+  // The ids are written in place while tracing has begun.
+  this->Host.ids.resize(
+    static_cast<std::size_t>(snapshot.camera.width) * snapshot.camera.height);
+  this->Tracing = this->tracerSettings(settings);
+  this->Tracer = std::make_unique<ImageTracer>(snapshot, *this->Rays, this->Tracing,
+    settings.shadesOnCPU() ? Wanted::Everything : Wanted::SecondaryOnly, this->Host.ids.data(),
+    this->Traced);
+}
+
+//------------------------------------------------------------------------------
+std::string FrameRenderer::readBackAndTrace(const Snapshot& snapshot, const Settings& settings)
+{
   try
   {
-    if (!this->Rays) // neither shadows nor mirrors: an empty structure will not be asked
+    this->beginTracing(snapshot, settings);
+    if (this->readIds([this](int rows) { this->Tracer->idsReady(rows); }))
     {
-      this->Rays = makeStructure(settings.accelerator);
-      this->RaysKind = settings.accelerator;
+      return {};
     }
-    SecondaryImage image;
-    const SecondaryResult result =
-      function(snapshot, *this->Rays, tracerSettings(settings), ids.data(), image);
-    this->Statistics.rays += result.rays;
-    this->Statistics.secondaryPixels = result.pixels;
-    this->Statistics.invalidIds = result.invalidIds;
-    target.allocate(image.width, image.height, GL_RGBA32F, GL_RGBA, GL_FLOAT);
-    target.upload(image.pixels.data());
-    this->Statistics.bytesUploaded += image.pixels.size() * sizeof(image.pixels[0]);
   }
   catch (const std::exception& exception)
   {
+    this->Tracer.reset();
+    return std::string("the rays could not be traced: ") + exception.what();
+  }
+  this->Tracer.reset();
+  return "the object intersection buffer could not be read back";
+}
+
+//------------------------------------------------------------------------------
+std::string FrameRenderer::finishTracing(
+  const Snapshot& snapshot, const Settings& settings, Image2D& target)
+{
+  try
+  {
+    if (!this->Tracer) // the ids were on the host already
+    {
+      this->beginTracing(snapshot, settings);
+    }
+    const SecondaryResult result = this->Tracer->finish();
+    this->Tracer.reset();
+    this->Statistics.rays += result.rays;
+    this->Statistics.secondaryPixels = result.pixels;
+    this->Statistics.invalidIds = result.invalidIds;
+    target.allocate(this->Traced.width, this->Traced.height, GL_RGBA32F, GL_RGBA, GL_FLOAT);
+    target.upload(this->Traced.pixels.data());
+    this->Statistics.bytesUploaded += this->Traced.pixels.size() * sizeof(this->Traced.pixels[0]);
+  }
+  catch (const std::exception& exception)
+  {
+    this->Tracer.reset();
     return std::string("the rays could not be traced: ") + exception.what();
   }
   return {};
@@ -304,11 +337,13 @@ const std::vector<std::uint32_t>& FrameRenderer::ids()
 {
   if (!this->Valid.hostIds)
   {
-    this->ReadBack.begin(this->Hits);
-    this->ReadBackBegun = true;
-    this->Valid.hostIds = true;
+    this->Valid.hostIds = this->readIds([](int) {});
   }
-  return this->hostIds();
+  if (!this->Valid.hostIds)
+  {
+    this->Host.ids.clear();
+  }
+  return this->Host.ids;
 }
 
 //------------------------------------------------------------------------------
@@ -325,7 +360,7 @@ bool FrameRenderer::readBarycentrics(std::vector<glm::dvec2>& barycentrics)
 //------------------------------------------------------------------------------
 bool FrameRenderer::readShadow(int light, std::vector<float>& share)
 {
-  if (this->LastSettings.primaryShading == PrimaryShading::CPU)
+  if (this->LastSettings.shadesOnCPU())
   {
     return this->castShadows(light, share);
   }
@@ -338,7 +373,7 @@ bool FrameRenderer::readShadow(int light, std::vector<float>& share)
 //------------------------------------------------------------------------------
 bool FrameRenderer::castShadows(int light, std::vector<float>& share)
 {
-  TracerSettings settings = tracerSettings(this->LastSettings);
+  const TracerSettings settings = this->tracerSettings(this->LastSettings);
   const std::vector<std::uint32_t>& ids = this->ids();
   if (ids.empty() || !this->Rays)
   {

@@ -15,10 +15,12 @@
 #include "Rendering/Core/Plan/FramePlan.h"
 #include "Rendering/Core/Snapshot.h"
 #include "Rendering/Core/Structures/Structure.h"
+#include "Rendering/Core/Tracing/ImageTracer.h"
 #include "Rendering/Core/Tracing/Tracer.h"
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -74,12 +76,13 @@ private:
   std::string shadePrimary(const Snapshot& snapshot);
   std::string updateStructure(const Snapshot& snapshot, const Settings& settings);
   std::string castPrimary(const Snapshot& snapshot);
-  using Tracing = SecondaryResult(const Snapshot&, const Structure&, const TracerSettings&,
-    const std::uint32_t*, SecondaryImage&);
-  std::string trace(Tracing* function, const Snapshot& snapshot, const Settings& settings,
-    Image2D& target);
+  std::string readBackAndTrace(const Snapshot& snapshot, const Settings& settings);
+  void beginTracing(const Snapshot& snapshot, const Settings& settings);
+  std::string finishTracing(
+    const Snapshot& snapshot, const Settings& settings, Image2D& target);
   bool castShadows(int light, std::vector<float>& share);
-  const std::vector<std::uint32_t>& hostIds();
+  bool readIds(const std::function<void(int)>& rowsReady);
+  TracerSettings tracerSettings(const Settings& settings) const;
   RayCaster::Inputs inputs(const Snapshot& snapshot) const;
 
   // Destroyed last: all others hold names that it owns.
@@ -95,8 +98,12 @@ private:
   Blit ToWindow;
   std::unique_ptr<Structure> Rays;
   Accelerator RaysKind = Accelerator::Embree;
-  PrimaryHits Host;         // ids in host memory, by rays or read back
-  bool ReadBackBegun = false;
+  PrimaryHits Host; // ids in host memory, by rays or read back
+
+  // The picture that is being traced; in this order, so that the tracer goes first.
+  TracerSettings Tracing;
+  SecondaryImage Traced;
+  std::unique_ptr<ImageTracer> Tracer;
 
   std::shared_ptr<const Snapshot> Scene; // of the last frame
   Settings LastSettings;

@@ -1,6 +1,8 @@
 // See HitReadBack.h.
 #include "Rendering/OpenGL2/HitReadBack.h"
 
+#include "Rendering/OpenGL2/OffscreenState.h"
+
 #include <cstring>
 
 namespace hrt
@@ -10,42 +12,28 @@ namespace gl
 
 //------------------------------------------------------------------------------
 HitReadBack::HitReadBack(ObjectPool& pool)
-  : Buffer(pool.makeBuffer())
+  : Pixels(pool)
 {
 }
 
 //------------------------------------------------------------------------------
-void HitReadBack::begin(const ObjectIntersectionBuffer& hits)
+bool HitReadBack::read(vtkOpenGLRenderWindow* window, const ObjectIntersectionBuffer& hits,
+  std::vector<std::uint32_t>& ids, const std::function<void(int)>& rowsReady)
 {
-  const auto pixels =
-    static_cast<std::uint64_t>(hits.hits().width()) * static_cast<std::uint64_t>(hits.hits().height());
-  this->Bytes = pixels * sizeof(std::uint32_t);
-  glBindBuffer(GL_PIXEL_PACK_BUFFER, this->Buffer);
-  glBufferData(
-    GL_PIXEL_PACK_BUFFER, static_cast<GLsizeiptr>(this->Bytes), nullptr, GL_STREAM_READ);
+  const int width = hits.hits().width();
+  const int height = hits.hits().height();
+  ids.resize(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
+  std::vector<PixelReadBack::Piece> pieces;
+  PixelReadBack::cut({ 0, 0, width, height }, kReadBackRows, pieces);
+  OffscreenState state(window, hits.framebuffer(), width, height);
   // Only the first component is asked for, in direct rendering too: (u, v) is computed again in
   // double from the ray and the triangle, which is more exact than what the rasteriser interpolated.
-  {
-    const ScopedTexture bound(GL_TEXTURE_2D, hits.hits().name());
-    glGetTexImage(GL_TEXTURE_2D, 0, GL_RED_INTEGER, GL_UNSIGNED_INT, nullptr);
-  }
-  glBindBuffer(GL_PIXEL_PACK_BUFFER, 0);
-}
-
-//------------------------------------------------------------------------------
-bool HitReadBack::finish(std::vector<std::uint32_t>& ids)
-{
-  ids.resize(static_cast<std::size_t>(this->Bytes / sizeof(std::uint32_t)));
-  glBindBuffer(GL_PIXEL_PACK_BUFFER, this->Buffer);
-  const void* data = glMapBufferRange(
-    GL_PIXEL_PACK_BUFFER, 0, static_cast<GLsizeiptr>(this->Bytes), GL_MAP_READ_BIT);
-  if (data)
-  {
-    std::memcpy(ids.data(), data, static_cast<std::size_t>(this->Bytes));
-    glUnmapBuffer(GL_PIXEL_PACK_BUFFER);
-  }
-  glBindBuffer(GL_PIXEL_PACK_BUFFER, 0);
-  return data != nullptr;
+  return this->Pixels.read(pieces, { GL_RED_INTEGER, GL_UNSIGNED_INT, sizeof(ids[0]) },
+    [&](const PixelReadBack::Piece& piece, const void* texels) {
+      std::memcpy(ids.data() + static_cast<std::size_t>(piece.y) * width, texels,
+        sizeof(ids[0]) * piece.width * piece.height);
+      rowsReady(piece.y + piece.height);
+    });
 }
 
 //------------------------------------------------------------------------------

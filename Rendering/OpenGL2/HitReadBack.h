@@ -1,15 +1,18 @@
-// Brings the object intersection buffer's triangle numbers to host memory through a pixel buffer
-// object (paper, section 3.1): the copy is queued right after the buffer is drawn, other work of the
-// frame is issued, and only then are the numbers mapped.
+// Brings the object intersection buffer to host memory, piece by piece, so that the CPU starts on the
+// rows that have arrived while the rest is in flight (paper, section 3.1).
 #pragma once
 
 #include "Rendering/OpenGL2/ObjectIntersectionBuffer.h"
 #include "Rendering/OpenGL2/ObjectPool.h"
+#include "Rendering/OpenGL2/PixelReadBack.h"
 
 #include <glm/glm.hpp>
 
 #include <cstdint>
+#include <functional>
 #include <vector>
+
+class vtkOpenGLRenderWindow;
 
 namespace hrt
 {
@@ -21,21 +24,18 @@ class HitReadBack
 public:
   explicit HitReadBack(ObjectPool& pool);
 
-  // Queues the copy.
-  void begin(const ObjectIntersectionBuffer& hits);
-  // Waits for it. width x height numbers plus one (0: no hit), row 0 at the bottom. False when the
-  // driver would not map the buffer.
-  bool finish(std::vector<std::uint32_t>& ids);
+  // Fills in width x height triangle numbers plus one (0: no hit), row 0 at the bottom, and calls
+  // rowsReady(n) each time more rows are there: [0, n) then are. False when the driver would not map
+  // a buffer.
+  bool read(vtkOpenGLRenderWindow* window, const ObjectIntersectionBuffer& hits,
+    std::vector<std::uint32_t>& ids, const std::function<void(int)>& rowsReady);
 
   // The (u, v) that direct rendering stored, at once. False when the buffer is an item buffer.
   static bool readBarycentrics(
     const ObjectIntersectionBuffer& hits, std::vector<glm::dvec2>& barycentrics);
 
-  std::uint64_t bytes() const { return this->Bytes; }
-
 private:
-  GLuint Buffer;
-  std::uint64_t Bytes = 0;
+  PixelReadBack Pixels;
 };
 
 } // namespace gl

@@ -4,6 +4,7 @@
 
 #include "Rendering/OpenGL2/ObjectPool.h"
 
+#include "Rendering/Core/Shading/ShadowLookup.h"
 #include "Rendering/Core/Snapshot.h"
 
 #include <vector>
@@ -23,13 +24,6 @@ namespace gl
 inline constexpr int kPartTexels = 14;
 inline constexpr int kLayoutTexels = 2;
 inline constexpr int kLightTexels = 5;
-
-// Where a light's shadow map lies among all faces; count 0: the light casts none.
-struct ShadowSlot
-{
-  int firstFace = 0;
-  int faceCount = 0;
-};
 
 class PartTables
 {

@@ -2,7 +2,6 @@
 #include "Rendering/OpenGL2/Shader.h"
 
 #include "Rendering/OpenGL2/PartTables.h"
-#include "Rendering/OpenGL2/ShadowMaps.h"
 
 #include "vtkOpenGLRenderWindow.h"
 #include "vtkOpenGLShaderCache.h"
@@ -10,6 +9,7 @@
 
 #include "RayCaster_fs.h"
 #include "Shading.h"
+#include "ShadowLookup.h"
 
 #include <locale>
 #include <sstream>
@@ -33,8 +33,11 @@ std::string definitions()
   text << "#define LIGHT_TEXELS " << kLightTexels << "\n";
   text << "#define FACE_TEXELS " << kFaceTexels << "\n";
   text << "#define FACE_SEAM " << kFaceSeam << "\n";
-  text << "#define ROUNDING " << kRounding << "\n";
+  text << "#define ROUNDING " << kShadowRounding << "\n";
   text << "#define MINIMUM_COSINE2 " << kMinimumCosine2 << "\n";
+  text << "#define HRT_SHADOW_FACE(i) texelFetch(shadowFaces, i)\n";
+  text << "#define HRT_SHADOW_DEPTH(place) texelFetch(shadowAtlas, place, 0).r\n";
+  text << "#define HRT_SHADOW_CLEAR shadowClearDepth\n";
   return text.str();
 }
 
@@ -52,7 +55,7 @@ const std::string& rayCasterSource()
 {
   static const std::string source = [] {
     std::string text = RayCaster_fs;
-    vtkShaderProgram::Substitute(text, "//HRT::Shading", definitions() + Shading);
+    vtkShaderProgram::Substitute(text, "//HRT::Shading", definitions() + Shading + ShadowLookup);
     return text;
   }();
   return source;

@@ -48,6 +48,7 @@ ShadowMaps::ShadowMaps(ObjectPool& pool, const DepthConvention& convention)
   , Faces(pool, GL_RGBA32F)
   , Framebuffer(pool.makeFramebuffer())
   , Convention(convention)
+  , Transfer(pool)
 {
 }
 
@@ -144,6 +145,7 @@ bool ShadowMaps::draw(vtkOpenGLRenderWindow* window, const Snapshot& snapshot,
     map.faces = fitLightFaces(snapshot, snapshot.lights[i], casters, this->Resolution,
       this->Convention.reversed ? kNearestRatioReversed : kNearestRatioPlain);
     map.drawn = true;
+    map.onHost = false;
     for (std::size_t k = 0; k < map.faces.size(); ++k)
     {
       const glm::ivec2 at = this->tile(map.firstFace + static_cast<int>(k));
@@ -170,7 +172,7 @@ bool ShadowMaps::draw(vtkOpenGLRenderWindow* window, const Snapshot& snapshot,
 }
 
 //------------------------------------------------------------------------------
-void ShadowMaps::updateTable(const Snapshot& snapshot)
+std::vector<glm::vec4> ShadowMaps::faceTable(const Snapshot& snapshot) const
 {
   const glm::dmat4 viewToWorld = glm::inverse(snapshot.camera.worldToView);
   const double bend = std::sqrt(2.0) * std::tan(glm::radians(kSmoothFold));
@@ -199,13 +201,70 @@ void ShadowMaps::updateTable(const Snapshot& snapshot)
         static_cast<float>(this->Resolution), static_cast<float>(bend));
       // Without reversed depth, the float of a perspective map near 1 resolves 2^-24 d^2 / near.
       const double quadratic =
-        face.perspective && !this->Convention.reversed ? kRounding / face.near : 0.0;
+        face.perspective && !this->Convention.reversed ? kShadowRounding / face.near : 0.0;
       table.emplace_back(static_cast<float>(face.texelConstant),
         static_cast<float>(face.texelLinear), static_cast<float>(face.near),
         static_cast<float>(quadratic));
     }
   }
+  return table;
+}
+
+//------------------------------------------------------------------------------
+void ShadowMaps::updateTable(const Snapshot& snapshot)
+{
+  const std::vector<glm::vec4> table = this->faceTable(snapshot);
   this->Faces.upload(table.data(), table.size() * sizeof(glm::vec4), GL_STREAM_DRAW);
+}
+
+//------------------------------------------------------------------------------
+bool ShadowMaps::readBack(vtkOpenGLRenderWindow* window, std::uint64_t& bytes)
+{
+  std::vector<PixelReadBack::Piece> pieces;
+  for (Map& map : this->Maps)
+  {
+    for (std::size_t k = 0; k < map.faces.size() && !map.onHost; ++k)
+    {
+      const glm::ivec2 at = this->tile(map.firstFace + static_cast<int>(k));
+      PixelReadBack::cut(
+        { at.x, at.y, this->Resolution, this->Resolution }, kReadBackRows, pieces);
+    }
+    map.onHost = map.drawn;
+  }
+  if (!this->HostDepths || this->HostDepths.use_count() > 1)
+  {
+    this->HostDepths = this->HostDepths ? std::make_shared<std::vector<float>>(*this->HostDepths)
+                                        : std::make_shared<std::vector<float>>();
+  }
+  const auto width = static_cast<std::size_t>(this->Atlas.width());
+  this->HostDepths->resize(width * static_cast<std::size_t>(this->Atlas.height()));
+  if (pieces.empty())
+  {
+    return true;
+  }
+  OffscreenState state(window, this->Framebuffer, this->Atlas.width(), this->Atlas.height());
+  return this->Transfer.read(pieces, { GL_DEPTH_COMPONENT, GL_FLOAT, sizeof(float) },
+    [&](const PixelReadBack::Piece& piece, const void* texels) {
+      const auto* row = static_cast<const float*>(texels);
+      for (int y = piece.y; y < piece.y + piece.height; ++y, row += piece.width)
+      {
+        std::copy(row, row + piece.width,
+          this->HostDepths->begin() + static_cast<std::ptrdiff_t>(y * width + piece.x));
+      }
+      bytes += sizeof(float) * piece.width * piece.height;
+    });
+}
+
+//------------------------------------------------------------------------------
+std::shared_ptr<const ShadowMapTables> ShadowMaps::hostTables(const Snapshot& snapshot) const
+{
+  auto tables = std::make_shared<ShadowMapTables>();
+  tables->faces = this->faceTable(snapshot);
+  tables->slots = this->Slots;
+  tables->depths = this->HostDepths;
+  tables->width = this->Atlas.width();
+  tables->clearDepth = this->clearDepth();
+  return tables;
 }
 
 //------------------------------------------------------------------------------

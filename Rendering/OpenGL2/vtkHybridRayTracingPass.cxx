@@ -68,7 +68,8 @@ void vtkHybridRayTracingPass::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "Visibility: " << visibilities[this->Visibility] << "\n";
   os << indent << "PrimaryShading: " << (this->PrimaryShading == GPU ? "GPU" : "CPU") << "\n";
   os << indent << "Accelerator: " << (this->Accelerator == Embree ? "Embree" : "KdTree") << "\n";
-  os << indent << "ShadowMode: " << (this->ShadowMode == ShadowsOff ? "Off" : "ShadowMaps") << "\n";
+  const char* const shadowModes[] = { "Off", "ShadowMaps", "Exact" };
+  os << indent << "ShadowMode: " << shadowModes[this->ShadowMode] << "\n";
   os << indent << "ShadowMapResolution: " << this->ShadowMapResolution << "\n";
   os << indent << "Reflections: " << (this->Reflections ? "On" : "Off") << "\n";
   os << indent << "Refractions: " << (this->Refractions ? "On" : "Off") << "\n";
@@ -131,9 +132,10 @@ void vtkHybridRayTracingPass::SetAccelerator(int accelerator)
 //------------------------------------------------------------------------------
 void vtkHybridRayTracingPass::SetShadowMode(int mode)
 {
-  if (mode != ShadowsOff && mode != ShadowMaps)
+  if (mode < ShadowsOff || mode > Exact)
   {
-    vtkErrorMacro("SetShadowMode: " << mode << " is neither ShadowsOff (0) nor ShadowMaps (1)");
+    vtkErrorMacro("SetShadowMode: " << mode
+                                    << " is none of ShadowsOff (0), ShadowMaps (1) and Exact (2)");
     return;
   }
   if (this->ShadowMode != mode)
@@ -362,8 +364,9 @@ std::string vtkHybridRayTracingPass::TraceFrame(const vtkRenderState* s,
     this->PrimaryShading == CPU ? hrt::PrimaryShading::CPU : hrt::PrimaryShading::GPU;
   settings.accelerator =
     this->Accelerator == KdTree ? hrt::Accelerator::KdTree : hrt::Accelerator::Embree;
-  settings.shadows =
-    this->ShadowMode == ShadowsOff ? hrt::ShadowMode::Off : hrt::ShadowMode::ShadowMaps;
+  settings.shadows = this->ShadowMode == ShadowsOff ? hrt::ShadowMode::Off
+    : this->ShadowMode == Exact                      ? hrt::ShadowMode::Exact
+                                                     : hrt::ShadowMode::ShadowMaps;
   settings.shadowMapResolution = this->ShadowMapResolution;
   settings.reflections = this->Reflections;
   settings.refractions = this->Refractions;

@@ -92,10 +92,11 @@ public:
 
   ///@{
   /**
-   * Where the first hits are shaded. GPU: by the ray caster's fragment shader, with shadow maps
-   * (paper, section 3.2). CPU: by the tracer on all cores, with a shadow ray to each light, through
-   * translucent casters tinted; with RayCasting this is the paper's traditional ray tracer, every
-   * ray on the CPU. Both use the same shading equations. Default: GPU.
+   * Where the first hits are shaded. GPU: by the ray caster's fragment shader (paper, section 3.2).
+   * CPU: on all cores, starting with the first rows of the object intersection buffer that are
+   * read back (paper, section 3.1); with RayCasting this is the paper's traditional ray tracer, every
+   * ray on the CPU. Both use the same shading equations and look up the same shadow maps, see
+   * SetShadowMode. Default: GPU.
    */
   void SetPrimaryShading(int shading);
   vtkGetMacro(PrimaryShading, int);
@@ -125,21 +126,25 @@ public:
   enum ShadowModeType
   {
     ShadowsOff = 0,
-    ShadowMaps = 1
+    ShadowMaps = 1,
+    Exact = 2
   };
 
   ///@{
   /**
    * Shadows. ShadowMaps: one depth map per light (paper, section 2.2), for directional, spot and
-   * point lights; a surface seen in a mirror or through glass, or shaded on the CPU, is shadowed by
-   * rays. Opaque actors cast; glass lets all light through, and so do translucent actors unless the
-   * CPU shades. A positional headlight sits in the
-   * viewer's eye and shows no shadow. Default: ShadowMaps.
+   * point lights; what is seen in a mirror or through glass is shadowed by rays. Exact: a shadow ray
+   * to each light from everything that is seen; shadow rays end on the CPU, which then shades
+   * too, whatever PrimaryShading says. The traditional ray tracer (RayCasting, CPU) rasterises
+   * nothing: there both names mean rays. Opaque actors cast; glass lets all light through; translucent
+   * actors let it all through shadow maps and tint what passes with shadow rays. A positional headlight
+   * sits in the viewer's eye and shows no shadow. Default: ShadowMaps.
    */
   void SetShadowMode(int mode);
   vtkGetMacro(ShadowMode, int);
   void SetShadowModeToOff() { this->SetShadowMode(ShadowsOff); }
   void SetShadowModeToShadowMaps() { this->SetShadowMode(ShadowMaps); }
+  void SetShadowModeToExact() { this->SetShadowMode(Exact); }
   ///@}
 
   ///@{

@@ -100,6 +100,8 @@ def draw(renderer, render, visibility, shading, shadows):
     getattr(rt, "SetPrimaryShadingTo" + shading)()
     if not shadows:
         rt.SetShadowModeToOff()
+    elif shading == "CPU":
+        rt.SetShadowModeToExact()
     rt.SetBuffers(["triangle"])
     renderer.SetPass(rt)
     picture = render(renderer, SIZE) / 255.0

@@ -11,22 +11,24 @@ import test_shadows as shadows
 from vtkhybrid import buffer, statistics, vtkHybridMaterial, vtkHybridRayTracingPass
 
 MIXTURES = {
-    "traditional": ("RayCasting", "CPU"),
-    "rays, shaded on the GPU": ("RayCasting", "GPU"),
-    "rasterised, shaded on the CPU": ("ItemBuffer", "CPU"),
+    "traditional": ("RayCasting", "CPU", "ShadowMaps"),
+    "rays, shaded on the GPU": ("RayCasting", "GPU", "ShadowMaps"),
+    "CPU ray caster": ("ItemBuffer", "CPU", "ShadowMaps"),
+    "rasterised, shadow rays": ("ItemBuffer", "CPU", "Exact"),
 }
 
 
 def choose(rt, mixture):
-    visibility, shading = MIXTURES[mixture]
+    visibility, shading, shadow_mode = MIXTURES[mixture]
     getattr(rt, "SetVisibilityTo" + visibility)()
     getattr(rt, "SetPrimaryShadingTo" + shading)()
+    getattr(rt, "SetShadowModeTo" + shadow_mode)()
 
 
 @pytest.mark.parametrize("scene", scenes.PARITY, ids=lambda scene: scene.__name__)
 @pytest.mark.parametrize("mixture", MIXTURES)
 def test_same_picture_as_vtk(scene, mixture, render):
-    visibility, shading = MIXTURES[mixture]
+    visibility, shading, _ = MIXTURES[mixture]
     figures = parity.compare(scene(), render, visibility, shading=shading)
     parity.check(f"{scene.__name__} {mixture}", figures)
 
@@ -67,7 +69,7 @@ def test_hybrid_shows_the_traditional_picture(render):
     triangle: at most 0.2 % of the pixels."""
     renderer = lively()
     pictures = {}
-    for mixture in ("traditional", "rasterised, shaded on the CPU"):
+    for mixture in ("traditional", "rasterised, shadow rays"):
         rt = vtkHybridRayTracingPass()
         choose(rt, mixture)
         renderer.SetPass(rt)
@@ -76,6 +78,46 @@ def test_hybrid_shows_the_traditional_picture(render):
     wrong = np.count_nonzero(np.abs(one - other).max(axis=2) > 1) / one[..., 0].size
     print(f"hybrid against traditional: {100 * wrong:.4f} % of the pixels differ")
     assert wrong <= 0.002
+
+
+@pytest.mark.parametrize("kind", shadows.LIGHTS)
+def test_both_ray_casters_look_up_the_same_maps(kind, render):
+    """The CPU's look-up is the GPU's, in the same precision. The points looked up are not: on the CPU
+    they are rounded from double, so that a comparison with a texel's depth may turn out otherwise
+    where the two are within rounding - or, on the CPU, the texel next door is looked up."""
+    renderer, rt = shadows.scene(kind)
+    on_gpu = render(renderer, (600, 300)).astype(int)
+    rt.SetPrimaryShadingToCPU()
+    on_cpu = render(renderer, (600, 300)).astype(int)
+    counters = statistics(rt)
+    assert counters["rays"]["shadow"]["asked"] == 0
+    assert counters["stages"]["shadow_read_back"]["ran"]
+    assert not counters["stages"]["shadow_maps"]["ran"], "the maps that the GPU holds are read back"
+    wrong = np.abs(on_gpu - on_cpu).max(axis=2) > 1
+    print(f"CPU against GPU ray caster, {kind}: {wrong.sum()} of {wrong.size} pixels differ")
+    # Rounding: 2^-24 of a coordinate against a texel's size of 2^-11 of the map, along outlines that
+    # take at most some percent of the pixels.
+    assert wrong.mean() <= 1e-4
+    visible = buffer(rt, "shadow")
+    rt.SetPrimaryShadingToGPU()
+    render(renderer, (600, 300))
+    hit = ~np.isnan(visible[..., 0])
+    differs = np.abs(visible - buffer(rt, "shadow"))[hit] > 1e-3
+    assert hit.mean() > 0.1 and differs.mean() <= 1e-3
+
+
+def test_moved_light_alone_is_read_back(render):
+    renderer, rt = shadows.scene("spot")
+    rt.SetPrimaryShadingToCPU()
+    rt.SetShadowMapResolution(256)
+    render(renderer)
+    assert statistics(rt)["bytes_read_back"] == 4 * (256 * 256 + 300 * 300)
+    renderer.GetActiveCamera().Azimuth(3.0)
+    render(renderer)
+    assert statistics(rt)["bytes_read_back"] == 4 * 300 * 300
+    list(renderer.GetLights())[0].SetPosition(0.4, 3.0, 1.0)
+    render(renderer)
+    assert statistics(rt)["bytes_read_back"] == 4 * 256 * 256
 
 
 def test_every_ray_is_counted(render):
@@ -136,7 +178,7 @@ def test_near_plane_cuts_as_the_rasteriser_does(render):
         vtkHybridMaterial.Clear(prop)
     renderer.GetActiveCamera().SetClippingRange(4.6, 7.0)
     pictures = []
-    for mixture in ("traditional", "rasterised, shaded on the CPU"):
+    for mixture in ("traditional", "rasterised, shadow rays"):
         rt = vtkHybridRayTracingPass()
         choose(rt, mixture)
         renderer.SetPass(rt)

@@ -131,7 +131,7 @@ StageDecision planUpload(
   {
     return skip("nothing is in view");
   }
-  if (!rasterises(settings) && settings.primaryShading == PrimaryShading::CPU)
+  if (!rasterises(settings) && settings.shadesOnCPU())
   {
     return skip("all is done on the CPU");
   }
@@ -142,11 +142,11 @@ StageDecision planUpload(
 StageDecision planShadowMap(std::size_t light, const Facts& facts, const Settings& settings,
   const Inputs& inputs, const Caches& caches)
 {
-  if (settings.shadows != ShadowMode::ShadowMaps)
+  if (settings.shadows == ShadowMode::Off)
   {
     return skip("shadows are off");
   }
-  if (settings.primaryShading == PrimaryShading::CPU)
+  if (settings.usesShadowRays())
   {
     return skip("the CPU shades with shadow rays");
   }
@@ -206,7 +206,7 @@ StageDecision planPrimaryShading(const Facts& facts, const Settings& settings,
     return run("a shadow map is new");
   }
   // The tracer's picture holds its mirrors and glass.
-  const bool whole = settings.primaryShading == PrimaryShading::CPU;
+  const bool whole = settings.shadesOnCPU();
   return decide(whole ? inputs.secondaryImage() : inputs.primaryImage(), caches.primaryImage,
     "no primary image yet", "the primary image is valid");
 }
@@ -240,7 +240,7 @@ StageDecision planSecondary(const StageDecision& needed, const Settings& setting
   {
     return needed;
   }
-  if (settings.primaryShading == PrimaryShading::CPU)
+  if (settings.shadesOnCPU())
   {
     return skip("traced with the primary image");
   }
@@ -250,14 +250,32 @@ StageDecision planSecondary(const StageDecision& needed, const Settings& setting
     caches.secondaryImage, "no secondary image yet", "the secondary image is valid");
 }
 
+StageDecision planShadowReadBack(
+  const Settings& settings, const FramePlan& plan, const Caches& caches)
+{
+  if (!settings.shadesOnCPU())
+  {
+    return skip("the GPU shades");
+  }
+  if (!settings.usesShadowMaps() || plan.shadowMaps.empty())
+  {
+    return skip(plan[Stage::ShadowMaps].reason);
+  }
+  if (!plan[Stage::PrimaryShading].run)
+  {
+    return skip(plan[Stage::PrimaryShading].reason);
+  }
+  return decide(plan[Stage::ShadowMaps].run ? "a shadow map is new" : nullptr,
+    caches.hostShadowMaps, "the CPU shades with the maps", "the maps are on the host");
+}
+
 StageDecision planReadBack(
   const Settings& settings, const FramePlan& plan, const Caches& caches)
 {
-  const bool shadesOnCPU =
-    settings.primaryShading == PrimaryShading::CPU && plan[Stage::PrimaryShading].run;
+  const bool shadesOnCPU = settings.shadesOnCPU() && plan[Stage::PrimaryShading].run;
   if (!shadesOnCPU && !plan[Stage::SecondaryRays].run)
   {
-    return skip(settings.primaryShading == PrimaryShading::CPU
+    return skip(settings.shadesOnCPU()
         ? plan[Stage::PrimaryShading].reason
         : plan[Stage::SecondaryRays].reason);
   }
@@ -280,11 +298,9 @@ StageDecision needsStructure(
   {
     return run("primary rays");
   }
-  const bool shadesOnCPU =
-    settings.primaryShading == PrimaryShading::CPU && plan[Stage::PrimaryShading].run;
-  if (shadesOnCPU && (settings.shadows != ShadowMode::Off || secondary.run))
+  if (settings.shadesOnCPU() && plan[Stage::PrimaryShading].run)
   {
-    return run("shadow rays");
+    return settings.usesShadowRays() ? run("shadow rays") : secondary;
   }
   return plan[Stage::SecondaryRays];
 }
@@ -356,6 +372,8 @@ const char* stageName(Stage stage)
       return "visibility";
     case Stage::PrimaryShading:
       return "primary_shading";
+    case Stage::ShadowReadBack:
+      return "shadow_read_back";
     case Stage::ReadBack:
       return "read_back";
     case Stage::Structure:
@@ -398,12 +416,13 @@ FramePlan planFrame(const Facts& facts, const Settings& settings,
   plan[Stage::Visibility] = planVisibility(facts, inputs, caches);
   plan[Stage::PrimaryShading] = planPrimaryShading(facts, settings, plan, inputs, caches);
   plan[Stage::SecondaryRays] = planSecondary(secondary, settings, plan, inputs, caches);
+  plan[Stage::ShadowReadBack] = planShadowReadBack(settings, plan, caches);
   plan[Stage::ReadBack] = planReadBack(settings, plan, caches);
   plan[Stage::Structure] =
     planStructure(needsStructure(secondary, settings, plan), inputs, caches);
   plan[Stage::Blit] = planBlit(facts, plan);
   plan.useSecondaryImage =
-    secondary.run && settings.primaryShading == PrimaryShading::GPU;
+    secondary.run && !settings.shadesOnCPU();
   return plan;
 }
 
@@ -422,7 +441,9 @@ Caches cachesAfter(const FramePlan& plan, const Settings& settings,
   after.hostIds = plan[Stage::ReadBack].run ||
     (plan[Stage::Visibility].run ? settings.visibility == Visibility::RayCasting
                                  : before.hostIds && !inputs.visibility());
-  const bool whole = settings.primaryShading == PrimaryShading::CPU;
+  after.hostShadowMaps = plan[Stage::ShadowReadBack].run ||
+    (before.hostShadowMaps && !plan[Stage::ShadowMaps].run);
+  const bool whole = settings.shadesOnCPU();
   after.primaryImage = valid(Stage::PrimaryShading,
     whole ? inputs.secondaryImage() : inputs.primaryImage(), before.primaryImage);
   after.secondaryImage =

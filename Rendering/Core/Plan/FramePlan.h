@@ -22,7 +22,7 @@ enum class Visibility : std::uint8_t
 enum class PrimaryShading : std::uint8_t
 {
   GPU, // the ray caster's shader, shadows from maps
-  CPU  // the tracer, shadows from rays
+  CPU  // the tracer, shadows from maps that were read back or from rays
 };
 enum class Accelerator : std::uint8_t
 {
@@ -32,7 +32,8 @@ enum class Accelerator : std::uint8_t
 enum class ShadowMode : std::uint8_t
 {
   Off,
-  ShadowMaps
+  ShadowMaps, // drawn by the rasteriser
+  Exact       // rays
 };
 
 // What the user asked for; read from the pass.
@@ -46,6 +47,19 @@ struct Settings
   bool refractions = true;
   int maximumDepth = 3;          // bounces of a secondary ray
   int shadowMapResolution = 2048;// texels along a side of one map face
+
+  // Shadow rays end at the CPU, and so must be shaded what they were cast for.
+  bool shadesOnCPU() const
+  {
+    return primaryShading == PrimaryShading::CPU || shadows == ShadowMode::Exact;
+  }
+  // How what the camera sees gets its shadows. The traditional ray tracer draws nothing, maps neither.
+  bool usesShadowMaps() const
+  {
+    return shadows == ShadowMode::ShadowMaps &&
+      !(shadesOnCPU() && visibility == Visibility::RayCasting);
+  }
+  bool usesShadowRays() const { return shadows != ShadowMode::Off && !usesShadowMaps(); }
 };
 
 // Which results a change of the settings outdates.
@@ -75,6 +89,7 @@ struct Caches
   bool geometryUploaded = false;      // the GPU holds this snapshot's geometry
   bool visibility = false;            // the object intersection buffer exists with this size
   bool hostIds = false;               // its ids are in host memory
+  bool hostShadowMaps = false;        // all valid shadow maps are in host memory
   bool primaryImage = false;          // the shaded primary image exists
   bool secondaryImage = false;        // the secondary rays' image exists
   bool structure = false;             // a ray structure exists
@@ -88,6 +103,7 @@ enum class Stage : std::uint8_t
   ShadowMaps,      // depth maps as seen from the lights
   Structure,       // acceleration structure for rays
   Visibility,      // what each pixel shows: rasterised or by primary rays
+  ShadowReadBack,  // shadow maps to host memory
   ReadBack,        // ids of the pixels to host memory
   PrimaryShading,  // GPU ray caster, or the tracer
   SecondaryRays,   // reflection, refraction and their shadow rays

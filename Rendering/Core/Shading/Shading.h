@@ -12,6 +12,8 @@ namespace hrt
 {
 namespace shading
 {
+using glm::ivec2;
+using glm::mat4;
 using glm::vec2;
 using glm::vec3;
 using glm::vec4;

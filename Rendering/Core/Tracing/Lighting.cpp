@@ -35,7 +35,11 @@ Lighting::Lighting(const Snapshot& snapshot, const Surfaces& surfaces, const Str
   for (const Light& light : snapshot.lights)
   {
     this->Lights.push_back(shadingLight(light, snapshot.singleHeadlight, glm::dmat4(1.0)));
+    this->ViewLights.push_back(
+      shadingLight(light, snapshot.singleHeadlight, snapshot.camera.worldToView));
   }
+  this->ToView = snapshot.camera.worldToView;
+  this->ToView[3] = snapshot.camera.worldToView * glm::dvec4(snapshot.origin, 1.0);
   this->AnyTranslucent =
     std::any_of(snapshot.parts.begin(), snapshot.parts.end(), &isTranslucent);
 }
@@ -85,6 +89,14 @@ void Lighting::addLights(const SurfacePoint& point, const shading::HrtSurface& c
     if (!this->Settings.shadows)
     {
       target.sum += portion;
+      continue;
+    }
+    if (target.direct && this->Settings.shadowMaps)
+    {
+      if (portion != glm::vec3(0.0f))
+      {
+        target.sum += portion * this->shareFromMap(point, i);
+      }
       continue;
     }
     ++shadowRays.asked;
@@ -160,8 +172,25 @@ glm::vec3 Lighting::transmittance(Ray ray) const
   return glm::vec3(0.0f);
 }
 
+// As the GPU ray caster looks it up: in single precision, in view coordinates.
+float Lighting::shareFromMap(const SurfacePoint& point, std::size_t light) const
+{
+  const ShadowMapTables& tables = *this->Settings.shadowMaps;
+  const ShadowSlot& slot = tables.slots[light];
+  const glm::vec3 position(this->ToView * glm::dvec4(point.position, 1.0));
+  const glm::vec3 normal(
+    glm::normalize(glm::inverseTranspose(glm::dmat3(this->ToView)) * point.geometricNormal));
+  const float folds = this->Scene.parts[point.part].geometry->flat ? 0.0f : 1.0f;
+  return shading::ShadowLookup(tables).hrtLightVisibility(
+    slot.firstFace, slot.faceCount, this->ViewLights[light], position, normal, folds);
+}
+
 float Lighting::visibleShare(const SurfacePoint& point, std::size_t light) const
 {
+  if (this->Settings.shadowMaps)
+  {
+    return this->shareFromMap(point, light);
+  }
   Ray ray;
   const Sight seen = this->sight(point, this->Scene.lights[light], ray);
   if (seen != Sight::Open)

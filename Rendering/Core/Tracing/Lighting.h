@@ -41,6 +41,8 @@ public:
     std::uint32_t pixel;
     glm::vec3 weight;
     glm::vec3& sum; // of the pixel
+    // The camera sees the point directly: shadow maps, where there are some, decide its shadows.
+    bool direct = false;
   };
 
   // Ambient and every light's diffuse and specular part; hrtUnlit where the material or the scene
@@ -55,7 +57,7 @@ public:
   // Traces the queue's rays and adds what passes; the queue is empty afterwards.
   void flush(ShadowQueue& queue, RayOrder order, std::vector<glm::vec3>& sums) const;
 
-  // The share of one light that reaches a point.
+  // The share of one light that reaches a point that the camera sees.
   float visibleShare(const SurfacePoint& point, std::size_t light) const;
 
 private:
@@ -72,12 +74,15 @@ private:
   };
   Sight sight(const SurfacePoint& point, const Light& light, Ray& ray) const;
   glm::vec3 transmittance(Ray ray) const;
+  float shareFromMap(const SurfacePoint& point, std::size_t light) const;
 
   const Snapshot& Scene;
   const Structure& Rays;
   const TracerSettings& Settings;
   const Surfaces& Points;
   std::vector<shading::HrtLight> Lights; // positions unset: see lightFrom
+  std::vector<shading::HrtLight> ViewLights; // in view coordinates, as shadow maps are looked up in
+  glm::dmat4 ToView; // from coordinates relative to the scene's origin
   bool AnyTranslucent = false;
   // The eye of a perspective camera, relative to the scene's origin.
   bool HasEye = false;

@@ -214,7 +214,7 @@ void TileTracer::arrive(const SurfacePoint& point, const glm::dvec3& direction,
   const float mirror =
     this->Frame.isMirror(*point.material) ? point.material->reflectance : 0.0f;
   const Lighting::Target target{ path.pixel, path.weight * (opacity * (1.0f - mirror)),
-    this->Sums[path.pixel] };
+    this->Sums[path.pixel], path.bounces == 0 && path.layers == 0 };
   this->Frame.lighting.shade(point, toViewer, target, this->Shadows, this->Counters.shadow);
   if (mirror > 0.0f)
   {

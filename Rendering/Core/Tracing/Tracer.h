@@ -4,10 +4,12 @@
 // and in a mirror.
 #pragma once
 
+#include "Rendering/Core/Shading/ShadowLookup.h"
 #include "Rendering/Core/Snapshot.h"
 #include "Rendering/Core/Structures/Structure.h"
 
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 namespace hrt
@@ -17,6 +19,8 @@ struct TracerSettings
 {
   int maximumDepth = 3;       // bounces; a ray that would be the (n+1)th adds nothing
   bool shadows = true;        // shadow rays at the hits
+  // For what the camera sees directly, looked up instead of casting shadow rays; null: rays there too.
+  std::shared_ptr<const ShadowMapTables> shadowMaps;
   bool tintedShadows = false; // translucent surfaces take their share of a shadow ray's light
   bool reflections = true;
   bool refractions = true;
@@ -115,7 +119,7 @@ SecondaryResult traceImage(const Snapshot& snapshot, const Structure& structure,
   const TracerSettings& settings, const std::uint32_t* ids, SecondaryImage& image);
 
 // The visible share of one light at every pixel with a valid id, 1 lit to 0 in shadow, NaN elsewhere;
-// by shadow rays. With tinted shadows the mean over the colours.
+// by shadow rays or from the settings' shadow maps. With tinted shadows the mean over the colours.
 std::vector<float> castShadowRays(const Snapshot& snapshot, const Structure& structure,
   const TracerSettings& settings, const std::uint32_t* ids, std::size_t light);
 

@@ -2,10 +2,6 @@
 // The GPU ray caster (paper, section 3.2): for every pixel, look the triangle up in the object
 // intersection buffer, intersect it with the primary ray or take the interpolated (u, v), test the
 // shadow maps and shade. All positions are in view coordinates.
-//HRT::Shading
-
-#define FAR_AWAY 1e30 // farther than any distance, its square within float
-
 uniform usampler2D hitBuffer;
 uniform usamplerBuffer trianglePart; // part number of each triangle
 uniform samplerBuffer positions;     // 3 corners a triangle
@@ -30,6 +26,8 @@ uniform vec3 rayOrigin0, rayOriginX, rayOriginY;
 uniform vec3 rayDirection0, rayDirectionX, rayDirectionY;
 out vec4 fragmentColor;
 
+//HRT::Shading
+
 mat4 fetchMatrix(samplerBuffer table, int at)
 {
   return mat4(texelFetch(table, at), texelFetch(table, at + 1), texelFetch(table, at + 2),
@@ -46,78 +44,11 @@ HrtLight fetchLight(int index)
   return HrtLight(t0.xyz, t1.xyz, t2.xyz, t3.xyz, t1.w, t2.w, int(t0.w));
 }
 
-// Share of a light that reaches a point, from one face of its shadow map. The map's depth at a
-// texel's centre is compared with the depth, on the same line of sight, of the plane of the
-// receiving triangle: a plane never shadows itself, whatever its slope, and the bias only has to
-// cover rounding and the bend between neighbouring facets (see ShadowMaps.h).
-float faceVisibility(int at, vec4 clip, vec4 planeVC, float cosine, float eyeDistance, float folds)
-{
-  mat4 planeToClip = fetchMatrix(shadowFaces, at + 4);
-  vec4 depthToDistance = texelFetch(shadowFaces, at + 8);
-  vec4 tile = texelFetch(shadowFaces, at + 9);  // origin, size in texels, bend bias
-  vec4 scale = texelFetch(shadowFaces, at + 10);// texel: x + y * d; near plane; rounding: w * d^2
-  vec4 plane = planeToClip * planeVC;
-
-  vec2 ndc = clip.xy / clip.w;
-  vec2 texel = (ndc * 0.5 + 0.5) * tile.z - 0.5;
-  vec2 corner = floor(texel);
-  vec2 weight = texel - corner;
-  float cosine2 = max(cosine * cosine, MINIMUM_COSINE2);
-  float share[4];
-  for (int k = 0; k < 4; ++k)
-  {
-    vec2 place = clamp(corner + vec2(float(k % 2), float(k / 2)), vec2(0.0), vec2(tile.z - 1.0));
-    float stored = texelFetch(shadowAtlas, ivec2(tile.xy + place), 0).r;
-    share[k] = 1.0;
-    if (stored != shadowClearDepth)
-    {
-      vec2 centre = (place + 0.5) / tile.z * 2.0 - 1.0;
-      float depth = -(plane.x * centre.x + plane.y * centre.y + plane.w) / plane.z;
-      float receiver = (depthToDistance.x + depthToDistance.y * depth) /
-        (depthToDistance.z + depthToDistance.w * depth);
-      float occluder = (depthToDistance.x + depthToDistance.y * stored) /
-        (depthToDistance.z + depthToDistance.w * stored);
-      // Beyond the horizon of the receiver's plane the line of sight never meets it.
-      receiver = receiver < scale.z && depthToDistance.w != 0.0 ? FAR_AWAY : receiver;
-      float bias = folds * tile.w * (scale.x + scale.y * occluder) / cosine2 +
-        ROUNDING * (eyeDistance + abs(occluder)) + scale.w * occluder * occluder;
-      share[k] = occluder < receiver - bias ? 0.0 : 1.0;
-    }
-  }
-  // Written so that four equal shares give exactly that share.
-  float low = share[0] + (share[1] - share[0]) * weight.x;
-  float high = share[2] + (share[3] - share[2]) * weight.x;
-  return low + (high - low) * weight.y;
-}
-
-// Share of a light that reaches point p of a triangle with unit normal ng on the viewer's side;
-// folds: 0 where the whole part lies in one plane, else 1.
+// Share of a light that reaches point p of a triangle with unit normal ng on the viewer's side.
 float lightVisibility(int index, HrtLight light, vec3 p, vec3 ng, float folds)
 {
   vec4 t4 = texelFetch(lightTable, index * LIGHT_TEXELS + 4);
-  int faceCount = int(t4.y);
-  if (faceCount == 0)
-  {
-    return 1.0;
-  }
-  float cosine = -dot(ng, hrtLightDirectionAt(light, p));
-  if (cosine <= 0.0)
-  {
-    return 0.0; // the surface turns its back to the light
-  }
-  vec4 planeVC = vec4(ng, -dot(ng, p));
-  for (int face = 0; face < faceCount; ++face)
-  {
-    int at = (int(t4.x) + face) * FACE_TEXELS;
-    vec4 clip = fetchMatrix(shadowFaces, at) * vec4(p, 1.0);
-    // A point on the seam of two cube faces belongs to either; rounding must not lose it to both.
-    float limit = clip.w * FACE_SEAM;
-    if (clip.w > 0.0 && abs(clip.x) <= limit && abs(clip.y) <= limit)
-    {
-      return faceVisibility(at, clip, planeVC, cosine, length(p), folds);
-    }
-  }
-  return 1.0; // outside of the map no caster stands between
+  return hrtLightVisibility(int(t4.x), int(t4.y), light, p, ng, folds);
 }
 
 HrtSurface fetchSurface(

@@ -31,6 +31,7 @@ struct Frame
     changes.lightMoved = { false, false };
     caches.geometryUploaded = caches.visibility = caches.primaryImage = true;
     caches.secondaryImage = caches.structure = caches.hostIds = true;
+    caches.hostShadowMaps = true;
     caches.shadowMaps = { true, true };
   }
 
@@ -40,8 +41,8 @@ struct Frame
   }
 };
 
-// The stages that run, by initials: Upload, shadow maps 0 and 1, Visibility, Primary, Read-back,
-// sTructure, secondarY rays, Blit.
+// The stages that run, by initials: Upload, shadow maps 0 and 1, Visibility, Primary, sHadow map
+// read-back, Read-back, sTructure, secondarY rays, Blit.
 std::string running(const FramePlan& plan)
 {
   std::string names;
@@ -53,6 +54,7 @@ std::string running(const FramePlan& plan)
   }
   add(plan[Stage::Visibility].run, "V");
   add(plan[Stage::PrimaryShading].run, "P");
+  add(plan[Stage::ShadowReadBack].run, "H");
   add(plan[Stage::ReadBack].run, "R");
   add(plan[Stage::Structure].run, "T");
   add(plan[Stage::SecondaryRays].run, "Y");
@@ -227,46 +229,87 @@ TEST(FramePlan, EveryStageHasANameAndAReason)
   EXPECT_STREQ(moved.plan()[Stage::Structure].reason, "an actor moved");
 }
 
-// The same rows for pictures that the CPU shades, over rasterised ids and over primary rays.
-TEST(FramePlan, CPUShadingNeedsNoMapsAndTracesAllAtOnce)
+// The same rows for pictures that the CPU shades, over rasterised ids with shadow maps and with
+// shadow rays, and over primary rays.
+TEST(FramePlan, CPUShadingTracesAllAtOnce)
 {
   const struct
   {
     const char* what;
-    const char* rasterised;
+    const char* maps;
+    const char* exact;
     const char* rayCast;
     std::function<void(Frame&)> change;
   } table[] = {
-    { "nothing", "B", "B", [](Frame&) {} },
-    { "first frame", "UVPRTB", "VPTB",
+    { "nothing", "B", "B", "B", [](Frame&) {} },
+    { "first frame", "U01VPHRTB", "UVPRTB", "VPTB",
       [](Frame& f) {
         f.changes = Changes();
         f.changes.lightMoved = { true, true };
         f.caches = Caches();
       } },
-    { "camera", "VPRB", "VPB", [](Frame& f) { f.changes.camera = true; } },
-    { "actor moved", "VPRTB", "VPTB", [](Frame& f) { f.changes.transforms = true; } },
-    { "light moved", "PB", "PB", [](Frame& f) { f.changes.lightMoved[1] = true; } },
-    { "background", "PB", "PB", [](Frame& f) { f.changes.background = true; } },
-    { "depth setting", "PB", "PB", [](Frame& f) { f.settingsChanges.secondary = true; } },
-    { "moved, no mirror, no shadow", "VPRB", "VPTB",
+    { "camera", "VPRB", "VPRB", "VPB", [](Frame& f) { f.changes.camera = true; } },
+    { "camera, maps on the GPU only", "VPHRB", "VPRB", "VPB",
+      [](Frame& f) {
+        f.changes.camera = true;
+        f.caches.hostShadowMaps = false;
+      } },
+    { "actor moved", "01VPHRTB", "VPRTB", "VPTB", [](Frame& f) { f.changes.transforms = true; } },
+    { "actor moved, no mirror", "01VPHRB", "VPRTB", "VPTB",
       [](Frame& f) {
         f.changes.transforms = true;
         f.facts.mirrorInView = false;
-        f.settings.shadows = ShadowMode::Off;
       } },
-    { "nothing in view", "", "", [](Frame& f) { f.facts.anyPartInView = false; } },
+    { "light moved", "1PHB", "PB", "PB", [](Frame& f) { f.changes.lightMoved[1] = true; } },
+    { "background", "PB", "PB", "PB", [](Frame& f) { f.changes.background = true; } },
+    { "depth setting", "PB", "PB", "PB", [](Frame& f) { f.settingsChanges.secondary = true; } },
+    { "maps on the GPU only", "B", "B", "B",
+      [](Frame& f) { f.caches.hostShadowMaps = false; } },
+    { "nothing in view", "", "", "", [](Frame& f) { f.facts.anyPartInView = false; } },
   };
   for (const auto& row : table)
   {
     Frame frame;
     frame.settings.primaryShading = PrimaryShading::CPU;
     row.change(frame);
-    EXPECT_EQ(running(frame.plan()), row.rasterised) << row.what;
+    EXPECT_EQ(running(frame.plan()), row.maps) << row.what;
     EXPECT_FALSE(frame.plan().useSecondaryImage) << row.what;
+    frame.settings.shadows = ShadowMode::Exact;
+    EXPECT_EQ(running(frame.plan()), row.exact) << row.what;
+    frame.settings.primaryShading = PrimaryShading::GPU; // shadow rays bring the shading with them
+    EXPECT_EQ(running(frame.plan()), row.exact) << row.what;
+    frame.settings.primaryShading = PrimaryShading::CPU;
     frame.settings.visibility = Visibility::RayCasting;
     EXPECT_EQ(running(frame.plan()), row.rayCast) << row.what;
+    frame.settings.shadows = ShadowMode::ShadowMaps; // nothing is rasterised, maps neither
+    EXPECT_EQ(running(frame.plan()), row.rayCast) << row.what;
   }
+}
+
+TEST(FramePlan, CPUShadingWithoutShadowsOrMirrorsTracesNothing)
+{
+  Frame frame;
+  frame.settings.primaryShading = PrimaryShading::CPU;
+  frame.settings.shadows = ShadowMode::Off;
+  frame.facts.mirrorInView = false;
+  frame.changes.transforms = true;
+  EXPECT_EQ(running(frame.plan()), "VPRB");
+  frame.settings.visibility = Visibility::RayCasting;
+  EXPECT_EQ(running(frame.plan()), "VPTB");
+}
+
+TEST(FramePlan, MapsThatNobodyReadBackAreNotOnTheHost)
+{
+  Frame frame;
+  frame.changes.lightMoved[0] = true;
+  const Caches after = cachesAfter(
+    frame.plan(), frame.settings, frame.settingsChanges, frame.changes, frame.caches);
+  EXPECT_TRUE(after.shadowMaps[0]);
+  EXPECT_FALSE(after.hostShadowMaps);
+  frame.settings.primaryShading = PrimaryShading::CPU;
+  EXPECT_TRUE(cachesAfter(
+    frame.plan(), frame.settings, frame.settingsChanges, frame.changes, frame.caches)
+                .hostShadowMaps);
 }
 
 TEST(FramePlan, PrimaryRaysFeedTheGPU)
