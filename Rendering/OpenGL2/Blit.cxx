@@ -22,8 +22,7 @@ Blit::Blit(ObjectPool& pool)
 }
 
 //------------------------------------------------------------------------------
-bool Blit::draw(vtkOpenGLRenderWindow* window, const Image2D& primary, const Image2D* secondary,
-  const ObjectIntersectionBuffer& hits, int x, int y)
+bool Blit::draw(vtkOpenGLRenderWindow* window, const Picture& picture, int x, int y)
 {
   vtkShaderProgram* program = readyProgram(window, ScreenTriangle_vs, Blit_fs);
   if (!program)
@@ -37,7 +36,7 @@ bool Blit::draw(vtkOpenGLRenderWindow* window, const Image2D& primary, const Ima
   vtkOpenGLState::ScopedglEnableDisable depthTest(state, GL_DEPTH_TEST);
   vtkOpenGLState::ScopedglDepthMask depthMask(state);
   vtkOpenGLState::ScopedglDepthFunc depthFunction(state);
-  state->vtkglViewport(x, y, primary.width(), primary.height());
+  state->vtkglViewport(x, y, picture.primary.width(), picture.primary.height());
   state->vtkglDisable(GL_BLEND);
   state->vtkglDisable(GL_CULL_FACE);
   // What an earlier layer left in a preserved depth buffer still hides us.
@@ -46,16 +45,16 @@ bool Blit::draw(vtkOpenGLRenderWindow* window, const Image2D& primary, const Ima
   state->vtkglDepthFunc(GL_LEQUAL);
 
   ScopedTextureUnits units(3);
-  primary.bind(0);
-  (secondary ? *secondary : primary).bind(1);
-  hits.depth().bind(2);
+  picture.primary.bind(0);
+  (picture.useSecondary ? picture.secondary : picture.primary).bind(1);
+  picture.hits.depth().bind(2);
   const int origin[2] = { x, y };
   program->SetUniformi("primaryImage", 0);
   program->SetUniformi("secondaryImage", 1);
   program->SetUniformi("hitDepth", 2);
   program->SetUniform2i("viewportOrigin", origin);
-  program->SetUniformi("useSecondary", secondary ? 1 : 0);
-  program->SetUniformi("reversedDepth", hits.convention().reversed ? 1 : 0);
+  program->SetUniformi("useSecondary", picture.useSecondary ? 1 : 0);
+  program->SetUniformi("reversedDepth", picture.hits.convention().reversed ? 1 : 0);
 
   glBindVertexArray(this->VertexArray);
   glDrawArrays(GL_TRIANGLES, 0, 3);

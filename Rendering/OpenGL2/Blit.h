@@ -2,8 +2,8 @@
 // VTK draws to. The only stage of a still scene.
 #pragma once
 
-#include "Rendering/OpenGL2/ObjectIntersectionBuffer.h"
 #include "Rendering/OpenGL2/ObjectPool.h"
+#include "Rendering/OpenGL2/Picture.h"
 
 class vtkOpenGLRenderWindow;
 
@@ -17,9 +17,8 @@ class Blit
 public:
   explicit Blit(ObjectPool& pool);
 
-  // Draws to the framebuffer that is bound, at the given corner. `secondary` may be null.
-  bool draw(vtkOpenGLRenderWindow* window, const Image2D& primary, const Image2D* secondary,
-    const ObjectIntersectionBuffer& hits, int x, int y);
+  // Draws to the framebuffer that is bound, at the given corner.
+  bool draw(vtkOpenGLRenderWindow* window, const Picture& picture, int x, int y);
 
 private:
   GLuint VertexArray;

@@ -1,11 +1,14 @@
 // See FrameRenderer.h.
 #include "Rendering/OpenGL2/FrameRenderer.h"
 
+#include "Rendering/OpenGL2/Animation.h"
+
 #include "Rendering/Core/Structures/EmbreeStructure.h"
 #include "Rendering/Core/Structures/KdTreeStructure.h"
 
 #include "vtkOpenGLRenderWindow.h"
 
+#include <algorithm>
 #include <chrono>
 #include <exception>
 #include <limits>
@@ -16,6 +19,32 @@ namespace gl
 {
 namespace
 {
+
+// What overlaps best: the host builds the structure while the GPU rasterises, and shades on the GPU
+// while the host traces - in a pipelined frame, the frame before.
+std::vector<Stage> orderOf(const FramePlan& plan, const Settings& settings)
+{
+  std::vector<Stage> order = { Stage::GeometryUpload, Stage::ShadowMaps };
+  if (settings.visibility == Visibility::RayCasting)
+  {
+    order.insert(order.end(), { Stage::Structure, Stage::Visibility });
+  }
+  else if (plan.pipelined.run && !settings.shadesOnCPU())
+  {
+    order.insert(order.end(), { Stage::Visibility, Stage::PrimaryShading, Stage::Structure });
+  }
+  else
+  {
+    order.insert(order.end(), { Stage::Visibility, Stage::Structure });
+  }
+  order.insert(order.end(), { Stage::ShadowReadBack, Stage::ReadBack });
+  if (std::find(order.begin(), order.end(), Stage::PrimaryShading) == order.end())
+  {
+    order.push_back(Stage::PrimaryShading);
+  }
+  order.insert(order.end(), { Stage::SecondaryRays, Stage::Blit });
+  return order;
+}
 
 std::unique_ptr<Structure> makeStructure(Accelerator accelerator)
 {
@@ -33,14 +62,14 @@ std::unique_ptr<Structure> makeStructure(Accelerator accelerator)
 FrameRenderer::FrameRenderer(vtkOpenGLRenderWindow* window)
   : Pool(window)
   , Convention(DepthConvention::ofCurrentContext())
+  , Hardware(isHardwareContext())
   , Geometry(Pool)
   , Tables(Pool)
   , Shadows(Pool, Convention)
-  , Hits(Pool, Convention)
   , Caster(Pool)
   , ReadBack(Pool)
-  , Secondary(Pool)
   , ToWindow(Pool)
+  , Pictures{ { { Pool, Convention }, { Pool, Convention } } }
 {
 }
 
@@ -52,13 +81,10 @@ Caches FrameRenderer::currentCaches(
   const int height = snapshot.camera.height;
   Caches caches = this->Valid;
   caches.geometryUploaded = this->Geometry.holds(snapshot);
-  if (this->Hits.resize(width, height, settings.visibility))
+  if (this->picture().resize(width, height, settings.visibility))
   {
-    caches.visibility = false;
-  }
-  if (this->Caster.resize(width, height))
-  {
-    caches.primaryImage = false;
+    caches.visibility = caches.primaryImage = caches.secondaryImage = false;
+    caches.previousPicture = caches.tracing = false;
   }
   std::vector<bool> wanted = facts.lightCanCast;
   for (std::size_t i = 0; i < wanted.size(); ++i)
@@ -78,79 +104,92 @@ Caches FrameRenderer::currentCaches(
 
 //------------------------------------------------------------------------------
 std::string FrameRenderer::render(const std::shared_ptr<const Snapshot>& snapshot,
-  const Changes& changes, const Settings& settings, int x, int y)
+  const Changes& changes, const Settings& settings, const Circumstances& circumstances, int x,
+  int y)
 {
   this->Statistics = FrameStatistics();
   this->Scene = snapshot;
   const SettingsChanges settingsChanges = compareSettings(this->LastSettings, settings);
-  const Facts facts = gatherFacts(*snapshot);
+  Facts facts = gatherFacts(*snapshot);
+  facts.circumstances = circumstances;
   const Caches caches = this->currentCaches(*snapshot, facts, settings);
   FramePlan& plan = this->Statistics.plan;
   plan = planFrame(facts, settings, settingsChanges, changes, caches);
+  if (!plan.keepsTracing)
+  {
+    this->Tracer.reset();
+  }
+  const std::size_t shown = this->Current;
+  if (plan.pipelined.run)
+  {
+    this->Current = 1 - this->Current;
+    this->picture().resize(snapshot->camera.width, snapshot->camera.height, settings.visibility);
+  }
+  this->picture().useSecondary = plan.useSecondaryImage;
 
   std::string error;
-  for (std::size_t i = 0; i < kStageCount && error.empty(); ++i)
+  for (const Stage stage : orderOf(plan, settings))
   {
-    const auto stage = static_cast<Stage>(i);
-    if (!plan[stage].run || stage == Stage::Blit)
+    if (!plan[stage].run || !error.empty())
     {
       continue;
     }
     const auto start = std::chrono::steady_clock::now();
-    error = this->runStage(stage, *snapshot, settings);
-    this->Statistics.milliseconds[i] =
+    error = stage == Stage::Blit ? this->show(shown, x, y) : this->runStage(stage, settings);
+    this->Statistics.milliseconds[static_cast<std::size_t>(stage)] =
       std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
   }
-  if (error.empty() && plan[Stage::Blit].run)
+  if (!plan.pipelined.run || !error.empty())
   {
-    const auto start = std::chrono::steady_clock::now();
-    const Image2D* secondary = plan.useSecondaryImage ? &this->Secondary : nullptr;
-    if (!this->ToWindow.draw(
-          this->Pool.window(), this->Caster.image(), secondary, this->Hits, x, y))
-    {
-      error = "the blit's shader is not usable";
-    }
-    this->Statistics.milliseconds[static_cast<std::size_t>(Stage::Blit)] =
-      std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+    this->Tracer.reset();
   }
-  this->Tracer.reset(); // when a stage between failed
   this->LastSettings = settings;
-  this->Valid = error.empty() ? cachesAfter(plan, settings, settingsChanges, changes, caches) : Caches();
+  this->Valid =
+    error.empty() ? cachesAfter(plan, settings, settingsChanges, changes, caches) : Caches();
   return error;
 }
 
 //------------------------------------------------------------------------------
-std::string FrameRenderer::runStage(
-  Stage stage, const Snapshot& snapshot, const Settings& settings)
+std::string FrameRenderer::runStage(Stage stage, const Settings& settings)
 {
+  const Snapshot& snapshot = *this->Scene;
+  const bool pipelined = this->Statistics.plan.pipelined.run;
   switch (stage)
   {
     case Stage::GeometryUpload:
       return this->uploadGeometry(snapshot);
     case Stage::ShadowMaps:
       return this->drawShadowMaps(snapshot);
-    case Stage::Structure:
-      return this->updateStructure(snapshot, settings);
     case Stage::Visibility:
       return settings.visibility == Visibility::RayCasting ? this->castPrimary(snapshot)
                                                            : this->drawVisibility(snapshot);
+    case Stage::Structure:
+      return this->updateStructure(snapshot, settings);
     case Stage::ShadowReadBack:
       return this->Shadows.readBack(this->Pool.window(), this->Statistics.bytesReadBack)
         ? std::string()
         : "the shadow maps could not be read back";
     case Stage::ReadBack:
-      return this->readBackAndTrace(snapshot, settings);
+      return this->readBackAndTrace(settings);
     case Stage::PrimaryShading:
-      return settings.shadesOnCPU()
-        ? this->finishTracing(snapshot, settings, this->Caster.image())
-        : this->shadePrimary(snapshot);
+      return !settings.shadesOnCPU() ? this->shadePrimary(snapshot)
+        : pipelined                  ? std::string() // goes on when the frame is over
+                                     : this->trace(settings);
     case Stage::SecondaryRays:
-      return this->finishTracing(snapshot, settings, this->Secondary);
+      return pipelined ? std::string() : this->trace(settings);
     case Stage::Blit:
     case Stage::Count:
       break;
   }
   return {};
+}
+
+//------------------------------------------------------------------------------
+std::string FrameRenderer::show(std::size_t picture, int x, int y)
+{
+  return this->ToWindow.draw(this->Pool.window(), this->Pictures[picture], x, y)
+    ? std::string()
+    : "the blit's shader is not usable";
 }
 
 //------------------------------------------------------------------------------
@@ -181,18 +220,19 @@ std::string FrameRenderer::drawShadowMaps(const Snapshot& snapshot)
 //------------------------------------------------------------------------------
 std::string FrameRenderer::drawVisibility(const Snapshot& snapshot)
 {
-  if (!this->Hits.draw(this->Pool.window(), snapshot, this->Geometry))
+  ObjectIntersectionBuffer& hits = this->picture().hits;
+  if (!hits.draw(this->Pool.window(), snapshot, this->Geometry))
   {
     return "the object intersection buffer could not be drawn";
   }
-  this->Statistics.trianglesDrawn += this->Hits.trianglesDrawn();
+  this->Statistics.trianglesDrawn += hits.trianglesDrawn();
   return {};
 }
 
 //------------------------------------------------------------------------------
-RayCaster::Inputs FrameRenderer::inputs(const Snapshot& snapshot) const
+RayCaster::Inputs FrameRenderer::inputs(const Snapshot& snapshot)
 {
-  return { snapshot, this->Geometry, this->Tables, this->Shadows, this->Hits };
+  return { snapshot, this->Geometry, this->Tables, this->Shadows, this->picture().hits };
 }
 
 //------------------------------------------------------------------------------
@@ -200,7 +240,8 @@ std::string FrameRenderer::shadePrimary(const Snapshot& snapshot)
 {
   this->Shadows.updateTable(snapshot);
   this->Tables.update(snapshot, this->Shadows.slots());
-  return this->Caster.draw(this->Pool.window(), this->inputs(snapshot))
+  return this->Caster.draw(
+           this->Pool.window(), this->inputs(snapshot), this->picture().primary)
     ? std::string()
     : "the ray caster could not be drawn";
 }
@@ -208,6 +249,11 @@ std::string FrameRenderer::shadePrimary(const Snapshot& snapshot)
 //------------------------------------------------------------------------------
 std::string FrameRenderer::updateStructure(const Snapshot& snapshot, const Settings& settings)
 {
+  const std::string error = this->finishFrameBefore(); // its rays go through the present structure
+  if (!error.empty())
+  {
+    return error;
+  }
   try
   {
     if (!this->Rays || this->RaysKind != settings.accelerator)
@@ -229,7 +275,7 @@ std::string FrameRenderer::updateStructure(const Snapshot& snapshot, const Setti
 bool FrameRenderer::readIds(const std::function<void(int)>& rowsReady)
 {
   const bool done =
-    this->ReadBack.read(this->Pool.window(), this->Hits, this->Host.ids, rowsReady);
+    this->ReadBack.read(this->Pool.window(), this->picture().hits, this->Host.ids, rowsReady);
   this->Statistics.bytesReadBack += this->Host.ids.size() * sizeof(this->Host.ids[0]);
   return done;
 }
@@ -262,74 +308,99 @@ std::string FrameRenderer::castPrimary(const Snapshot& snapshot)
   {
     return std::string("the primary rays could not be traced: ") + exception.what();
   }
-  this->Hits.upload(this->Host);
+  this->picture().hits.upload(this->Host);
   this->Statistics.bytesUploaded +=
     this->Host.ids.size() * (sizeof(this->Host.ids[0]) + sizeof(float));
   return {};
 }
 
 //------------------------------------------------------------------------------
-void FrameRenderer::beginTracing(const Snapshot& snapshot, const Settings& settings)
+void FrameRenderer::beginTracing(const Settings& settings)
 {
   if (!this->Rays) // neither shadows nor mirrors: an empty structure will not be asked
   {
     this->Rays = makeStructure(settings.accelerator);
     this->RaysKind = settings.accelerator;
   }
-  // The ids are written in place while tracing has begun.
-  this->Host.ids.resize(
-    static_cast<std::size_t>(snapshot.camera.width) * snapshot.camera.height);
+  this->TracedScene = this->Scene;
+  this->TracedPicture = this->Current;
+  this->TracesEverything = settings.shadesOnCPU();
   this->Tracing = this->tracerSettings(settings);
-  this->Tracer = std::make_unique<ImageTracer>(snapshot, *this->Rays, this->Tracing,
-    settings.shadesOnCPU() ? Wanted::Everything : Wanted::SecondaryOnly, this->Host.ids.data(),
+  const Camera& camera = this->TracedScene->camera;
+  // The ids are written in place when tracing has begun.
+  this->Host.ids.resize(static_cast<std::size_t>(camera.width) * camera.height);
+  this->Tracer = std::make_unique<ImageTracer>(*this->TracedScene, *this->Rays, this->Tracing,
+    this->TracesEverything ? Wanted::Everything : Wanted::SecondaryOnly, this->Host.ids.data(),
     this->Traced);
 }
 
 //------------------------------------------------------------------------------
-std::string FrameRenderer::readBackAndTrace(const Snapshot& snapshot, const Settings& settings)
+std::string FrameRenderer::readBackAndTrace(const Settings& settings)
 {
+  const std::string error = this->finishFrameBefore(); // it reads the ids that are overwritten
+  if (!error.empty())
+  {
+    return error;
+  }
   try
   {
-    this->beginTracing(snapshot, settings);
-    if (this->readIds([this](int rows) { this->Tracer->idsReady(rows); }))
-    {
-      return {};
-    }
+    this->beginTracing(settings);
+    return this->readIds([this](int rows) { this->Tracer->idsReady(rows); })
+      ? std::string()
+      : "the object intersection buffer could not be read back";
   }
   catch (const std::exception& exception)
   {
-    this->Tracer.reset();
     return std::string("the rays could not be traced: ") + exception.what();
   }
-  this->Tracer.reset();
-  return "the object intersection buffer could not be read back";
 }
 
 //------------------------------------------------------------------------------
-std::string FrameRenderer::finishTracing(
-  const Snapshot& snapshot, const Settings& settings, Image2D& target)
+std::string FrameRenderer::trace(const Settings& settings)
 {
   try
   {
     if (!this->Tracer) // the ids were on the host already
     {
-      this->beginTracing(snapshot, settings);
+      this->beginTracing(settings);
     }
+  }
+  catch (const std::exception& exception)
+  {
+    return std::string("the rays could not be traced: ") + exception.what();
+  }
+  return this->finishTracing();
+}
+
+//------------------------------------------------------------------------------
+std::string FrameRenderer::finishTracing()
+{
+  try
+  {
     const SecondaryResult result = this->Tracer->finish();
     this->Tracer.reset();
     this->Statistics.rays += result.rays;
     this->Statistics.secondaryPixels = result.pixels;
     this->Statistics.invalidIds = result.invalidIds;
-    target.allocate(this->Traced.width, this->Traced.height, GL_RGBA32F, GL_RGBA, GL_FLOAT);
-    target.upload(this->Traced.pixels.data());
-    this->Statistics.bytesUploaded += this->Traced.pixels.size() * sizeof(this->Traced.pixels[0]);
   }
   catch (const std::exception& exception)
   {
     this->Tracer.reset();
     return std::string("the rays could not be traced: ") + exception.what();
   }
+  Picture& picture = this->Pictures[this->TracedPicture];
+  Image2D& target = this->TracesEverything ? picture.primary : picture.secondary;
+  target.allocate(this->Traced.width, this->Traced.height, GL_RGBA32F, GL_RGBA, GL_FLOAT);
+  target.upload(this->Traced.pixels.data());
+  this->Statistics.bytesUploaded += this->Traced.pixels.size() * sizeof(this->Traced.pixels[0]);
   return {};
+}
+
+//------------------------------------------------------------------------------
+std::string FrameRenderer::finishFrameBefore()
+{
+  return this->Tracer && this->TracedPicture != this->Current ? this->finishTracing()
+                                                             : std::string();
 }
 
 //------------------------------------------------------------------------------
@@ -349,7 +420,7 @@ const std::vector<std::uint32_t>& FrameRenderer::ids()
 //------------------------------------------------------------------------------
 bool FrameRenderer::readBarycentrics(std::vector<glm::dvec2>& barycentrics)
 {
-  if (!HitReadBack::readBarycentrics(this->Hits, barycentrics))
+  if (!HitReadBack::readBarycentrics(this->picture().hits, barycentrics))
   {
     return false;
   }

@@ -1,14 +1,19 @@
 // Carries out a frame plan: owns the GL side of the pass and the ray structure, runs the stages that
 // the plan asks for, in order, and keeps count of what was done. It decides nothing itself.
+//
+// A pipelined frame (paper, section 3.3) is drawn into the picture that is not shown, while the rays of
+// the frame before are traced in the background; then that one is finished and shown, and the new
+// frame's rays are started. They go on when render() has returned. Background tasks touch neither GL
+// nor VTK: they read an immutable snapshot and the ids, and write an image in host memory.
 #pragma once
 
 #include "Rendering/OpenGL2/Blit.h"
 #include "Rendering/OpenGL2/DepthConvention.h"
 #include "Rendering/OpenGL2/GeometryBuffers.h"
 #include "Rendering/OpenGL2/HitReadBack.h"
-#include "Rendering/OpenGL2/ObjectIntersectionBuffer.h"
 #include "Rendering/OpenGL2/ObjectPool.h"
 #include "Rendering/OpenGL2/PartTables.h"
+#include "Rendering/OpenGL2/Picture.h"
 #include "Rendering/OpenGL2/RayCaster.h"
 #include "Rendering/OpenGL2/ShadowMaps.h"
 
@@ -55,10 +60,12 @@ public:
 
   // Renders a frame into the bound framebuffer at (x, y). Empty when done, else what went wrong.
   std::string render(const std::shared_ptr<const Snapshot>& snapshot, const Changes& changes,
-    const Settings& settings, int x, int y);
+    const Settings& settings, const Circumstances& circumstances, int x, int y);
 
   const FrameStatistics& statistics() const { return this->Statistics; }
   const ObjectPool& pool() const { return this->Pool; }
+  // Whether the context is a graphics card's and not a software rasteriser's.
+  bool onHardware() const { return this->Hardware; }
 
   // For the user's buffers, after render().
   // Triangle numbers plus one of the last frame, row 0 at the bottom. Empty when they cannot be had.
@@ -69,40 +76,47 @@ public:
 private:
   Caches currentCaches(
     const Snapshot& snapshot, const Facts& facts, const Settings& settings);
-  std::string runStage(Stage stage, const Snapshot& snapshot, const Settings& settings);
+  std::string runStage(Stage stage, const Settings& settings);
   std::string uploadGeometry(const Snapshot& snapshot);
   std::string drawShadowMaps(const Snapshot& snapshot);
   std::string drawVisibility(const Snapshot& snapshot);
   std::string shadePrimary(const Snapshot& snapshot);
   std::string updateStructure(const Snapshot& snapshot, const Settings& settings);
   std::string castPrimary(const Snapshot& snapshot);
-  std::string readBackAndTrace(const Snapshot& snapshot, const Settings& settings);
-  void beginTracing(const Snapshot& snapshot, const Settings& settings);
-  std::string finishTracing(
-    const Snapshot& snapshot, const Settings& settings, Image2D& target);
+  std::string readBackAndTrace(const Settings& settings);
+  void beginTracing(const Settings& settings);
+  std::string trace(const Settings& settings);
+  std::string finishTracing();
+  std::string finishFrameBefore();
+  std::string show(std::size_t picture, int x, int y);
+  Picture& picture() { return this->Pictures[this->Current]; }
   bool castShadows(int light, std::vector<float>& share);
   bool readIds(const std::function<void(int)>& rowsReady);
   TracerSettings tracerSettings(const Settings& settings) const;
-  RayCaster::Inputs inputs(const Snapshot& snapshot) const;
+  RayCaster::Inputs inputs(const Snapshot& snapshot);
 
   // Destroyed last: all others hold names that it owns.
   ObjectPool Pool;
   DepthConvention Convention;
+  bool Hardware;
   GeometryBuffers Geometry;
   PartTables Tables;
   ShadowMaps Shadows;
-  ObjectIntersectionBuffer Hits;
   RayCaster Caster;
   HitReadBack ReadBack;
-  Image2D Secondary;
   Blit ToWindow;
+  std::array<Picture, 2> Pictures;
+  std::size_t Current = 0; // the picture of the last frame that was drawn
   std::unique_ptr<Structure> Rays;
   Accelerator RaysKind = Accelerator::Embree;
   PrimaryHits Host; // ids in host memory, by rays or read back
 
-  // The picture that is being traced; in this order, so that the tracer goes first.
+  // What is being traced, and for which picture; in this order, so that the tracer goes first.
+  std::shared_ptr<const Snapshot> TracedScene;
   TracerSettings Tracing;
   SecondaryImage Traced;
+  std::size_t TracedPicture = 0;
+  bool TracesEverything = false;
   std::unique_ptr<ImageTracer> Tracer;
 
   std::shared_ptr<const Snapshot> Scene; // of the last frame

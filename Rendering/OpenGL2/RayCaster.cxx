@@ -50,31 +50,24 @@ void setRays(vtkShaderProgram* program, const CameraRays& rays)
 
 //------------------------------------------------------------------------------
 RayCaster::RayCaster(ObjectPool& pool)
-  : Image(pool)
-  , Share(pool)
+  : Share(pool)
   , Framebuffer(pool.makeFramebuffer())
   , VertexArray(pool.makeVertexArray())
 {
 }
 
 //------------------------------------------------------------------------------
-bool RayCaster::resize(int width, int height)
+bool RayCaster::draw(vtkOpenGLRenderWindow* window, const Inputs& inputs, const Image2D& target)
 {
-  return this->Image.allocate(width, height, GL_RGBA32F, GL_RGBA, GL_FLOAT);
-}
-
-//------------------------------------------------------------------------------
-bool RayCaster::draw(vtkOpenGLRenderWindow* window, const Inputs& inputs)
-{
-  return this->shade(window, inputs, this->Image, -1, nullptr);
+  return this->shade(window, inputs, target, -1, nullptr);
 }
 
 //------------------------------------------------------------------------------
 bool RayCaster::readShadow(vtkOpenGLRenderWindow* window, const Inputs& inputs, int light,
   std::vector<float>& share)
 {
-  const int width = this->Image.width();
-  const int height = this->Image.height();
+  const int width = inputs.hits.hits().width();
+  const int height = inputs.hits.hits().height();
   this->Share.allocate(width, height, GL_RGBA32F, GL_RGBA, GL_FLOAT);
   share.assign(static_cast<std::size_t>(width) * height, 0.0f);
   return this->shade(window, inputs, this->Share, light, &share);

@@ -35,22 +35,17 @@ public:
     const ObjectIntersectionBuffer& hits;
   };
 
-  // Makes the image fit; true when what it held is lost.
-  bool resize(int width, int height);
-  // Shades the primary image. False after an error message.
-  bool draw(vtkOpenGLRenderWindow* window, const Inputs& inputs);
+  // Shades the primary image into `target`, of the hits' size. False after an error message.
+  bool draw(vtkOpenGLRenderWindow* window, const Inputs& inputs, const Image2D& target);
   // The visible share of one light per pixel, row 0 at the bottom; NaN where there is no hit.
   bool readShadow(vtkOpenGLRenderWindow* window, const Inputs& inputs, int light,
     std::vector<float>& share);
-
-  const Image2D& image() const { return this->Image; }
-  Image2D& image() { return this->Image; } // for a picture that the CPU shades
 
 private:
   bool shade(vtkOpenGLRenderWindow* window, const Inputs& inputs, const Image2D& target,
     int shadowLight, std::vector<float>* readBack);
 
-  Image2D Image, Share;
+  Image2D Share;
   GLuint Framebuffer;
   GLuint VertexArray;
 };

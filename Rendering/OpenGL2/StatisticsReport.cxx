@@ -105,6 +105,11 @@ std::string statisticsReport(const FrameStatistics& statistics, const Snapshot& 
           statistics.milliseconds[i]);
       }
     }
+    {
+      Object pipelined(report.key("pipelined"));
+      pipelined.boolean("ran", statistics.plan.pipelined.run);
+      pipelined.text("reason", statistics.plan.pipelined.reason);
+    }
     std::ostream& maps = report.key("shadow_maps");
     maps << "[";
     for (std::size_t i = 0; i < statistics.plan.shadowMaps.size(); ++i)

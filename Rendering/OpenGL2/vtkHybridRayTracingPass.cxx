@@ -3,6 +3,7 @@
 // and hrt::gl::FrameRenderer (doing it).
 #include "vtkHybridRayTracingPass.h"
 
+#include "Rendering/OpenGL2/Animation.h"
 #include "Rendering/OpenGL2/FrameRenderer.h"
 #include "Rendering/OpenGL2/RemainingProps.h"
 #include "Rendering/OpenGL2/StatisticsReport.h"
@@ -74,6 +75,8 @@ void vtkHybridRayTracingPass::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "Reflections: " << (this->Reflections ? "On" : "Off") << "\n";
   os << indent << "Refractions: " << (this->Refractions ? "On" : "Off") << "\n";
   os << indent << "MaximumDepth: " << this->MaximumDepth << "\n";
+  const char* const pipelined[] = { "Never", "InAnimations", "Automatic" };
+  os << indent << "Pipelined: " << pipelined[this->Pipelined] << "\n";
   os << indent << "Buffers:";
   for (const std::string& name : this->Internals->Buffers.names())
   {
@@ -163,6 +166,23 @@ void vtkHybridRayTracingPass::SetMaximumDepth(int depth)
   if (this->MaximumDepth != clamped)
   {
     this->MaximumDepth = clamped;
+    this->Modified();
+  }
+}
+
+//------------------------------------------------------------------------------
+void vtkHybridRayTracingPass::SetPipelined(int pipelined)
+{
+  if (pipelined < PipelinedNever || pipelined > PipelinedAutomatic)
+  {
+    vtkErrorMacro("SetPipelined: " << pipelined
+                                   << " is none of PipelinedNever (0), PipelinedInAnimations (1) and "
+                                      "PipelinedAutomatic (2)");
+    return;
+  }
+  if (this->Pipelined != pipelined)
+  {
+    this->Pipelined = pipelined;
     this->Modified();
   }
 }
@@ -373,8 +393,12 @@ std::string vtkHybridRayTracingPass::TraceFrame(const vtkRenderState* s,
   settings.maximumDepth = this->MaximumDepth;
 
   hrt::gl::FrameRenderer& frame = in.Frame(window);
-  const std::string error =
-    frame.render(snapshot, in.Scene->GetChanges(), settings, origin[0], origin[1]);
+  settings.pipelined = this->Pipelined == PipelinedInAnimations ||
+    (this->Pipelined == PipelinedAutomatic && frame.onHardware());
+  const hrt::Circumstances circumstances =
+    hrt::gl::circumstancesOf(s, window, *in.Scene, !in.Buffers.names().empty());
+  const std::string error = frame.render(
+    snapshot, in.Scene->GetChanges(), settings, circumstances, origin[0], origin[1]);
   if (!error.empty())
   {
     return error;

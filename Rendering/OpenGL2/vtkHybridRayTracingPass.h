@@ -187,6 +187,33 @@ public:
   vtkGetMacro(MaximumDepth, int);
   ///@}
 
+  enum PipelinedType
+  {
+    PipelinedNever = 0,
+    PipelinedInAnimations = 1,
+    PipelinedAutomatic = 2
+  };
+
+  ///@{
+  /**
+   * Pipelining (paper, section 3.3): in an animation each frame is shown one frame late, so that the
+   * CPU traces its rays while the application prepares, and the GPU draws, the next one. An animation is what
+   * is rendered while vtkRenderWindow::GetDesiredUpdateRate is at least 1 frame per second:
+   * interactor styles see to that while the mouse is moving the scene, and a script may set it. All
+   * other frames are finished at once; so is an animation's last one when the same view is rendered
+   * again, as vtkWindowToImageFilter and the end of an interaction do. Also finished at once are
+   * frames with actors that came or went, in stereo, with props that VTK draws itself, with another
+   * renderer of the same camera in the window, and when buffers are wanted. GetStatistics says
+   * whether a frame was pipelined and why not. Automatic: on where OpenGL is a graphics card's, off
+   * where it is software that takes the same cores. Default: Automatic.
+   */
+  void SetPipelined(int pipelined);
+  vtkGetMacro(Pipelined, int);
+  void PipelinedOn() { this->SetPipelined(PipelinedInAnimations); }
+  void PipelinedOff() { this->SetPipelined(PipelinedNever); }
+  void SetPipelinedToAutomatic() { this->SetPipelined(PipelinedAutomatic); }
+  ///@}
+
   ///@{
   /**
    * Per-pixel results to keep besides the picture, by name; nothing is computed that was not asked
@@ -251,6 +278,7 @@ private:
   bool Reflections = true;
   bool Refractions = true;
   int MaximumDepth = 3;
+  int Pipelined = PipelinedAutomatic;
 
   class vtkInternals;
   std::unique_ptr<vtkInternals> Internals;

@@ -119,6 +119,9 @@ bool rasterises(const Settings& settings)
   return settings.visibility != Visibility::RayCasting;
 }
 
+// Of what is not there: it is being traced.
+const char* const kUnderWay = "the rays under way are finished";
+
 StageDecision decide(Cause outdated, bool cached, const char* missing, const char* upToDate)
 {
   return outdated ? run(outdated) : cached ? skip(upToDate) : run(missing);
@@ -208,7 +211,7 @@ StageDecision planPrimaryShading(const Facts& facts, const Settings& settings,
   // The tracer's picture holds its mirrors and glass.
   const bool whole = settings.shadesOnCPU();
   return decide(whole ? inputs.secondaryImage() : inputs.primaryImage(), caches.primaryImage,
-    "no primary image yet", "the primary image is valid");
+    whole && caches.tracing ? kUnderWay : "no primary image yet", "the primary image is valid");
 }
 
 // Whether the settings let secondary rays run for what is in view; else why not.
@@ -247,7 +250,8 @@ StageDecision planSecondary(const StageDecision& needed, const Settings& setting
   // New visibility always renews the rays: the pixels of mirrors and glass are others.
   const StageDecision& visibility = plan[Stage::Visibility];
   return decide(visibility.run ? visibility.reason : inputs.secondaryImage(),
-    caches.secondaryImage, "no secondary image yet", "the secondary image is valid");
+    caches.secondaryImage, caches.tracing ? kUnderWay : "no secondary image yet",
+    "the secondary image is valid");
 }
 
 StageDecision planShadowReadBack(
@@ -314,6 +318,28 @@ StageDecision planStructure(
   }
   return decide(inputs.structure(), caches.structure, "no ray structure yet",
     "the ray structure is valid");
+}
+
+// Pipelining shows each frame of an animation one frame late (paper, section 3.3). Whatever must be of
+// one frame with the picture, or must not be seen once it is gone, forbids it.
+StageDecision planPipelining(const Facts& facts, const Settings& settings, const FramePlan& plan,
+  const Changes& changes, const Inputs& inputs, const Caches& caches)
+{
+  const Circumstances& around = facts.circumstances;
+  const Stage traced = settings.shadesOnCPU() ? Stage::PrimaryShading : Stage::SecondaryRays;
+  return !settings.pipelined ? skip("pipelining is off")
+    : !rasterises(settings)  ? skip("primary rays are traced at once")
+    : !plan[traced].run      ? skip("no rays are traced")
+    : !around.animation      ? skip("no interactive update rate is asked for")
+    : changes.first || changes.geometry ? skip("what is gone must not be shown")
+    : !caches.previousPicture ? skip("there is no frame before to be shown")
+    : !plan[Stage::Visibility].run && !inputs.secondaryImage()
+    ? skip("nothing changed: the frame is finished")
+    : around.stereo        ? skip("the next frame is the other eye's")
+    : around.othersDraw    ? skip("VTK draws props into this frame")
+    : around.sharedCamera  ? skip("another renderer shows the same view")
+    : around.buffersWanted ? skip("buffers of this frame are wanted")
+                           : run("an animation");
 }
 
 StageDecision planBlit(const Facts& facts, const FramePlan& plan)
@@ -401,10 +427,12 @@ SettingsChanges compareSettings(const Settings& before, const Settings& now)
   return changes;
 }
 
-FramePlan planFrame(const Facts& facts, const Settings& settings,
-  const SettingsChanges& settingsChanges, const Changes& changes, const Caches& caches)
+namespace
 {
-  const Inputs inputs(changes, settingsChanges);
+
+FramePlan planStages(const Facts& facts, const Settings& settings, const Inputs& inputs,
+  const Caches& caches)
+{
   const StageDecision secondary = needsSecondaryRays(facts, settings);
   FramePlan plan;
   plan[Stage::GeometryUpload] = planUpload(facts, settings, inputs, caches);
@@ -423,6 +451,29 @@ FramePlan planFrame(const Facts& facts, const Settings& settings,
   plan[Stage::Blit] = planBlit(facts, plan);
   plan.useSecondaryImage =
     secondary.run && !settings.shadesOnCPU();
+  return plan;
+}
+
+} // namespace
+
+FramePlan planFrame(const Facts& facts, const Settings& settings,
+  const SettingsChanges& settingsChanges, const Changes& changes, const Caches& caches)
+{
+  const Inputs inputs(changes, settingsChanges);
+  FramePlan plan = planStages(facts, settings, inputs, caches);
+  const StageDecision pipelined =
+    planPipelining(facts, settings, plan, changes, inputs, caches);
+  if (pipelined.run)
+  {
+    // The frame before keeps its buffers until it is shown; this one fills others.
+    Caches others = caches;
+    others.visibility = others.hostIds = others.tracing = false;
+    others.primaryImage = others.secondaryImage = false;
+    plan = planStages(facts, settings, inputs, others);
+  }
+  plan.pipelined = pipelined;
+  plan.keepsTracing = caches.tracing &&
+    (pipelined.run || (!plan[Stage::Visibility].run && !inputs.secondaryImage()));
   return plan;
 }
 
@@ -448,6 +499,12 @@ Caches cachesAfter(const FramePlan& plan, const Settings& settings,
     whole ? inputs.secondaryImage() : inputs.primaryImage(), before.primaryImage);
   after.secondaryImage =
     valid(Stage::SecondaryRays, inputs.secondaryImage(), before.secondaryImage);
+  if (plan.pipelined.run)
+  {
+    (whole ? after.primaryImage : after.secondaryImage) = false;
+  }
+  after.tracing = plan.pipelined.run;
+  after.previousPicture = plan[Stage::Blit].run;
   after.structure = valid(Stage::Structure, inputs.structure(), before.structure);
   for (std::size_t light = 0; light < plan.shadowMaps.size(); ++light)
   {

@@ -47,6 +47,7 @@ struct Settings
   bool refractions = true;
   int maximumDepth = 3;          // bounces of a secondary ray
   int shadowMapResolution = 2048;// texels along a side of one map face
+  bool pipelined = false;        // in animations, show a frame while the next one is traced
 
   // Shadow rays end at the CPU, and so must be shaded what they were cast for.
   bool shadesOnCPU() const
@@ -72,9 +73,20 @@ struct SettingsChanges
 };
 SettingsChanges compareSettings(const Settings& before, const Settings& now);
 
+// What surrounds a frame, as far as pipelining needs to know.
+struct Circumstances
+{
+  bool animation = false;     // more frames follow soon; the window asks for an interactive rate
+  bool stereo = false;        // the next frame is the other eye's
+  bool othersDraw = false;    // VTK draws props of its own at this frame's view
+  bool sharedCamera = false;  // so does another renderer of the window
+  bool buffersWanted = false; // the user asks for this frame's buffers
+};
+
 // What the scene holds, as far as the plan needs to know.
 struct Facts
 {
+  Circumstances circumstances;
   std::uint64_t triangles = 0;        // in the snapshot
   bool anyPartInView = false;         // some part that the camera sees meets the view frustum
   bool mirrorInView = false;          // same, for a part with reflectance
@@ -93,6 +105,8 @@ struct Caches
   bool primaryImage = false;          // the shaded primary image exists
   bool secondaryImage = false;        // the secondary rays' image exists
   bool structure = false;             // a ray structure exists
+  bool previousPicture = false;       // the picture of the last frame, of this size, can be shown
+  bool tracing = false;               // its rays are still under way
   std::vector<bool> shadowMaps;       // per light: its map exists at the wanted resolution
 };
 
@@ -126,6 +140,8 @@ struct FramePlan
   std::array<StageDecision, kStageCount> stages;
   std::vector<StageDecision> shadowMaps; // per light of the snapshot
   bool useSecondaryImage = false;        // composite the secondary image over the primary one
+  StageDecision pipelined;               // trace on after the frame, which shows the one before
+  bool keepsTracing = false;             // the rays under way since the last frame are still wanted
 
   const StageDecision& operator[](Stage s) const { return stages[static_cast<std::size_t>(s)]; }
   StageDecision& operator[](Stage s) { return stages[static_cast<std::size_t>(s)]; }

@@ -5,6 +5,8 @@
 #include <gtest/gtest.h>
 
 #include <functional>
+#include <set>
+#include <string>
 
 namespace
 {
@@ -296,6 +298,100 @@ TEST(FramePlan, CPUShadingWithoutShadowsOrMirrorsTracesNothing)
   EXPECT_EQ(running(frame.plan()), "VPRB");
   frame.settings.visibility = Visibility::RayCasting;
   EXPECT_EQ(running(frame.plan()), "VPTB");
+}
+
+// A moving camera in an animation, the frame before shown or still being traced.
+Frame animatedFrame(PrimaryShading shading)
+{
+  Frame frame;
+  frame.settings.pipelined = true;
+  frame.settings.primaryShading = shading;
+  frame.facts.circumstances.animation = true;
+  frame.changes.camera = true;
+  frame.caches.previousPicture = true;
+  return frame;
+}
+
+TEST(FramePlan, AnAnimationIsPipelined)
+{
+  for (const PrimaryShading shading : { PrimaryShading::GPU, PrimaryShading::CPU })
+  {
+    Frame frame = animatedFrame(shading);
+    const char* const stages = shading == PrimaryShading::GPU ? "VPRYB" : "VPRB";
+    FramePlan plan = frame.plan();
+    EXPECT_TRUE(plan.pipelined.run);
+    EXPECT_FALSE(plan.keepsTracing); // nothing was under way
+    EXPECT_EQ(running(plan), stages);
+    frame.caches = cachesAfter(
+      plan, frame.settings, frame.settingsChanges, frame.changes, frame.caches);
+    EXPECT_TRUE(frame.caches.tracing);
+    EXPECT_TRUE(frame.caches.hostIds);
+    EXPECT_NE(frame.caches.primaryImage, shading == PrimaryShading::CPU);
+    EXPECT_FALSE(frame.caches.secondaryImage && shading == PrimaryShading::GPU);
+
+    // The next frame keeps the rays under way.
+    plan = frame.plan();
+    EXPECT_TRUE(plan.pipelined.run);
+    EXPECT_TRUE(plan.keepsTracing);
+    EXPECT_EQ(running(plan), stages);
+
+    // Then nothing changes: what is under way is finished, and nothing drawn anew.
+    frame.changes.camera = false;
+    plan = frame.plan();
+    EXPECT_FALSE(plan.pipelined.run);
+    EXPECT_TRUE(plan.keepsTracing);
+    EXPECT_EQ(running(plan), shading == PrimaryShading::GPU ? "YB" : "PB");
+    frame.caches = cachesAfter(
+      plan, frame.settings, frame.settingsChanges, frame.changes, frame.caches);
+    EXPECT_FALSE(frame.caches.tracing);
+    EXPECT_EQ(running(frame.plan()), "B");
+  }
+}
+
+// Where only a light's colour changes, the picture that is shown still keeps its buffers to itself.
+TEST(FramePlan, APipelinedFrameFillsBuffersOfItsOwn)
+{
+  Frame frame = animatedFrame(PrimaryShading::GPU);
+  frame.changes.camera = false;
+  frame.changes.lightColors = true;
+  EXPECT_TRUE(frame.plan().pipelined.run);
+  EXPECT_EQ(running(frame.plan()), "VPRYB");
+  frame.settings.pipelined = false;
+  EXPECT_EQ(running(frame.plan()), "PYB");
+}
+
+TEST(FramePlan, WhatForbidsPipelining)
+{
+  const std::function<void(Frame&)> table[] = {
+    [](Frame& f) { f.settings.pipelined = false; },
+    [](Frame& f) { f.settings.visibility = Visibility::RayCasting; },
+    [](Frame& f) { f.facts.mirrorInView = false; },
+    [](Frame& f) { f.facts.circumstances.animation = false; },
+    [](Frame& f) { f.facts.circumstances.stereo = true; },
+    [](Frame& f) { f.facts.circumstances.othersDraw = true; },
+    [](Frame& f) { f.facts.circumstances.sharedCamera = true; },
+    [](Frame& f) { f.facts.circumstances.buffersWanted = true; },
+    [](Frame& f) { f.changes.geometry = true; },
+    [](Frame& f) { f.changes.first = true; },
+    [](Frame& f) { f.caches.previousPicture = false; },
+    [](Frame& f) { f.facts.anyPartInView = false; },
+  };
+  std::set<std::string> reasons;
+  for (const auto& change : table)
+  {
+    Frame frame = animatedFrame(PrimaryShading::GPU);
+    frame.caches.tracing = true;
+    frame.caches.secondaryImage = false;
+    change(frame);
+    const FramePlan plan = frame.plan();
+    EXPECT_FALSE(plan.pipelined.run) << plan.pipelined.reason;
+    EXPECT_FALSE(plan.keepsTracing) << plan.pipelined.reason; // another view's rays
+    reasons.insert(plan.pipelined.reason);
+    EXPECT_FALSE(
+      cachesAfter(plan, frame.settings, frame.settingsChanges, frame.changes, frame.caches)
+        .tracing);
+  }
+  EXPECT_GE(reasons.size(), 9u);
 }
 
 TEST(FramePlan, MapsThatNobodyReadBackAreNotOnTheHost)
