@@ -374,7 +374,7 @@ TEST(FramePlan, WhatForbidsPipelining)
     [](Frame& f) { f.changes.geometry = true; },
     [](Frame& f) { f.changes.first = true; },
     [](Frame& f) { f.caches.previousPicture = false; },
-    [](Frame& f) { f.facts.anyPartInView = false; },
+    [](Frame& f) { f.facts.anyPartInView = f.facts.mirrorInView = false; },
   };
   std::set<std::string> reasons;
   for (const auto& change : table)
