@@ -9,9 +9,12 @@
 #include "vtkOrderIndependentTranslucentPass.h"
 #include "vtkOverlayPass.h"
 #include "vtkProp.h"
+#include "vtkRenderWindow.h"
 #include "vtkRenderState.h"
 #include "vtkTranslucentPass.h"
 #include "vtkVolumetricPass.h"
+
+#include <algorithm>
 
 namespace hrt
 {
@@ -104,6 +107,7 @@ int RemainingProps::drawTranslucent(const vtkRenderState& state, bool withVolume
 {
   vtkRenderer* renderer = state.GetRenderer();
   vtkRenderPass* pass = nullptr;
+  this->forgetOtherSize(renderer);
   if (renderer->GetUseDepthPeeling())
   {
     if (!this->Peeling)
@@ -133,20 +137,40 @@ int RemainingProps::drawTranslucent(const vtkRenderState& state, bool withVolume
 }
 
 //------------------------------------------------------------------------------
+void RemainingProps::forgetOtherSize(vtkRenderer* renderer)
+{
+  int size[2], origin[2];
+  renderer->GetTiledSizeAndOrigin(&size[0], &size[1], &origin[0], &origin[1]);
+  if (this->Size[0] != size[0] || this->Size[1] != size[1])
+  {
+    std::copy(size, size + 2, this->Size);
+    this->forgetTranslucentPasses(renderer->GetRenderWindow());
+  }
+}
+
+//------------------------------------------------------------------------------
+// VTK's translucent passes reuse their texture objects, and then in another precision than new ones:
+// the picture would depend on what the window has been through.
+void RemainingProps::forgetTranslucentPasses(vtkWindow* window)
+{
+  for (vtkSmartPointer<vtkRenderPass>* pass : { &this->Peeling, &this->OrderIndependent })
+  {
+    if (*pass)
+    {
+      (*pass)->ReleaseGraphicsResources(window);
+      *pass = nullptr;
+    }
+  }
+}
+
+//------------------------------------------------------------------------------
 void RemainingProps::releaseGraphicsResources(vtkWindow* window)
 {
+  this->forgetTranslucentPasses(window);
   this->Opaque->ReleaseGraphicsResources(window);
   this->Translucent->ReleaseGraphicsResources(window);
   this->Volumetric->ReleaseGraphicsResources(window);
   this->Overlay->ReleaseGraphicsResources(window);
-  if (this->Peeling)
-  {
-    this->Peeling->ReleaseGraphicsResources(window);
-  }
-  if (this->OrderIndependent)
-  {
-    this->OrderIndependent->ReleaseGraphicsResources(window);
-  }
   if (this->FXAA)
   {
     this->FXAA->ReleaseGraphicsResources();

@@ -15,6 +15,7 @@ class vtkOverlayPass;
 class vtkProp;
 class vtkRenderPass;
 class vtkRenderState;
+class vtkRenderer;
 class vtkTranslucentPass;
 class vtkVolumetricPass;
 class vtkWindow;
@@ -37,11 +38,14 @@ public:
 
 private:
   int drawTranslucent(const vtkRenderState& state, bool withVolumes);
+  void forgetOtherSize(vtkRenderer* renderer);
+  void forgetTranslucentPasses(vtkWindow* window);
 
   vtkNew<vtkOpaquePass> Opaque;
   vtkNew<vtkTranslucentPass> Translucent;
   vtkNew<vtkVolumetricPass> Volumetric;
   vtkNew<vtkOverlayPass> Overlay;
+  int Size[2] = { 0, 0 }; // of the viewport that the translucent passes were made for
   vtkSmartPointer<vtkRenderPass> Peeling;
   vtkSmartPointer<vtkRenderPass> OrderIndependent;
   vtkSmartPointer<vtkOpenGLFXAAFilter> FXAA;

@@ -3,6 +3,7 @@ that a noisy machine disturbs both alike. Prints medians with quartiles and the 
 core by itself, where hrtCoreBenchmark was built: the kd-tree's build and rays beside Embree's.
 
     ./run bench [--quick] [--frames N] [--json FILE] [--no-core]
+    ./run bench --paper [...]     the paper's tables and figure, see paper.py
 
 Each case says what changes between its frames. Times are wall-clock milliseconds of a whole
 vtkRenderWindow.Render with the GL commands finished, 800 x 600, no multisampling.
@@ -12,45 +13,14 @@ import argparse
 import json
 import os
 import pathlib
-import platform
 import statistics as st
 import subprocess
 import sys
 import time
 
-sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent / "Python"))
-
-import scenes  # noqa: E402
-from vtkhybrid import (  # noqa: E402
-    __version__,
-    statistics,
-    vtkHybridMaterial,
-    vtkHybridRayTracingPass,
-)
-from vtkmodules.vtkCommonCore import vtkVersion  # noqa: E402
-from vtkmodules.vtkRenderingCore import vtkRenderWindow  # noqa: E402
-
-SIZE = (800, 600)
-WARM_UP = 3
-
-
-def scene(model, mirror=False, glass=False):
-    """The model on a floor under one spot light. Returns the renderer and the light."""
-    floor = scenes.actor_of(scenes.plane(1.6, -0.45), Color=(0.6, 0.6, 0.65))
-    if mirror:
-        vtkHybridMaterial.SetReflectance(floor, 0.4)
-    thing = scenes.actor_of(model, Color=(0.9, 0.7, 0.5), Specular=0.3, SpecularPower=20.0)
-    if glass:
-        vtkHybridMaterial.SetGlass(thing, 1.5)
-    thing.SetOrigin(*thing.GetCenter())
-    bounds = thing.GetBounds()
-    thing.SetScale(1.0 / max(bounds[1] - bounds[0], bounds[3] - bounds[2], bounds[5] - bounds[4]))
-    thing.AddPosition(*(-c for c in thing.GetCenter()))
-    renderer = scenes.renderer_of(floor, thing)
-    light = scenes.scene_light((1, 3, 2), positional=True, ConeAngle=30.0)
-    renderer.AddLight(light)
-    scenes.look(renderer, (0.3, 0.7, 2.2), (0, -0.05, 0))
-    return renderer, light
+from measure import SIZE, WARM_UP, device_of, header, model_on_floor, models, timed, window_of
+from vtkhybrid import __version__, statistics, vtkHybridRayTracingPass
+from vtkmodules.vtkCommonCore import vtkVersion
 
 
 def move_camera(renderer, _light, i):
@@ -78,20 +48,9 @@ CASES = [
 ]
 
 
-def timed(window):
-    start = time.perf_counter()
-    window.Render()
-    window.WaitForCompletion()
-    return 1000 * (time.perf_counter() - start)
-
-
 def run(model, keywords, settings, move, frames):
-    renderer, light = scene(model, **keywords)
-    window = vtkRenderWindow()
-    window.SetOffScreenRendering(1)
-    window.SetMultiSamples(0)
-    window.SetSize(*SIZE)
-    window.AddRenderer(renderer)
+    renderer, light = model_on_floor(model, **keywords)
+    window = window_of(renderer)
     rt = vtkHybridRayTracingPass()
     for name, value in settings.items():
         getattr(rt, "Set" + name)(value)
@@ -103,9 +62,7 @@ def run(model, keywords, settings, move, frames):
         renderer.SetPass(rt)
         hybrid.append(timed(window))
     counters = statistics(rt)
-    device = next(
-        (s.partition(":")[2].strip() for s in window.ReportCapabilities().splitlines()
-         if "renderer string" in s), "unknown")
+    device = device_of(window)
     window.Finalize()
     vtk, hybrid = vtk[WARM_UP:], hybrid[WARM_UP:]
     return {
@@ -119,16 +76,6 @@ def run(model, keywords, settings, move, frames):
     }
 
 
-def models():
-    yield "torus", scenes.torus()
-    root = os.environ.get("HRT_DATA_ROOT")
-    path = pathlib.Path(root, "bunny/bunny.ply") if root else None
-    if path and path.is_file():
-        yield "bunny", scenes.bunny(str(path))
-    else:
-        print("bunny: skipped, no scene data (see Data/README.md)")
-
-
 def run_core():
     """The table of hrtCoreBenchmark, which is built only where google-benchmark is installed."""
     program = pathlib.Path(__file__).resolve().parents[2] / "build/bin/hrtCoreBenchmark"
@@ -140,6 +87,10 @@ def run_core():
 
 
 def main():
+    if "--paper" in sys.argv[1:]:
+        import paper
+
+        return paper.main([a for a in sys.argv[1:] if a != "--paper"])
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--quick", action="store_true", help="few frames, for a first impression")
     parser.add_argument("--frames", type=int, help="frames a case after warm-up (default 25)")
@@ -163,13 +114,12 @@ def main():
                   flush=True)
     print("OpenGL:", results[0]["device"])
     if arguments.json:
-        header = {"vtkhybrid": __version__, "vtk": vtkVersion.GetVTKVersion(), "size": SIZE,
-                  "cores": os.cpu_count(), "machine": platform.machine(), "frames": frames}
         pathlib.Path(arguments.json).write_text(
-            json.dumps({**header, "results": results}, indent=1) + "\n", encoding="utf-8")
+            json.dumps({**header(frames), "results": results}, indent=1) + "\n", encoding="utf-8")
     if not arguments.no_core:
         run_core()
+    return 0
 
 
 if __name__ == "__main__":
-    main()
+    sys.exit(main())
