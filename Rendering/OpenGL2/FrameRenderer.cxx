@@ -161,7 +161,7 @@ std::string FrameRenderer::runStage(Stage stage, const Settings& settings)
     case Stage::ShadowMaps:
       return this->drawShadowMaps(snapshot);
     case Stage::Visibility:
-      return settings.visibility == Visibility::RayCasting ? this->castPrimary(snapshot)
+      return settings.visibility == Visibility::RayCasting ? this->castPrimary(snapshot, settings)
                                                            : this->drawVisibility(snapshot);
     case Stage::Structure:
       return this->updateStructure(snapshot, settings);
@@ -294,15 +294,19 @@ TracerSettings FrameRenderer::tracerSettings(const Settings& settings) const
   tracing.tintedShadows = settings.usesShadowRays();
   tracing.reflections = settings.reflections;
   tracing.refractions = settings.refractions;
+  tracing.multisampling = settings.usedMultisampling();
+  tracing.interleave = settings.interleave;
+  tracing.interleaveErrorControl = settings.interleaveErrorControl;
   return tracing;
 }
 
 //------------------------------------------------------------------------------
-std::string FrameRenderer::castPrimary(const Snapshot& snapshot)
+std::string FrameRenderer::castPrimary(const Snapshot& snapshot, const Settings& settings)
 {
   try
   {
-    this->Statistics.rays += castPrimaryRays(snapshot, *this->Rays, this->Host);
+    this->Statistics.rays +=
+      castPrimaryRays(snapshot, *this->Rays, tracerSettings(settings), this->Host);
   }
   catch (const std::exception& exception)
   {
@@ -380,6 +384,8 @@ std::string FrameRenderer::finishTracing()
     const SecondaryResult result = this->Tracer->finish();
     this->Tracer.reset();
     this->Statistics.rays += result.rays;
+    this->Statistics.multisampling = result.multisampling;
+    this->Statistics.interleave = result.interleave;
     this->Statistics.secondaryPixels = result.pixels;
     this->Statistics.invalidIds = result.invalidIds;
   }

@@ -43,6 +43,8 @@ struct FrameStatistics
   FramePlan plan;
   std::array<double, kStageCount> milliseconds{}; // of the host, 0 for stages that did not run
   RayCounters rays;
+  MultisamplingCounts multisampling;
+  InterleaveCounts interleave;
   StructureReport structure;
   int shadowMapResolution = 0; // texels along a side, as memory allowed
   std::uint64_t secondaryPixels = 0;
@@ -82,7 +84,7 @@ private:
   std::string drawVisibility(const Snapshot& snapshot);
   std::string shadePrimary(const Snapshot& snapshot);
   std::string updateStructure(const Snapshot& snapshot, const Settings& settings);
-  std::string castPrimary(const Snapshot& snapshot);
+  std::string castPrimary(const Snapshot& snapshot, const Settings& settings);
   std::string readBackAndTrace(const Settings& settings);
   void beginTracing(const Settings& settings);
   std::string trace(const Settings& settings);

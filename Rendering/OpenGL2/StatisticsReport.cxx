@@ -128,6 +128,18 @@ std::string statisticsReport(const FrameStatistics& statistics, const Snapshot& 
       rays(classes.key("shadow"), statistics.rays.shadow);
     }
     {
+      Object multisampling(report.key("multisampling"));
+      multisampling.number("failed", statistics.multisampling.failed);
+      multisampling.number("repaired", statistics.multisampling.repaired);
+      multisampling.number("interpolated", statistics.multisampling.interpolated);
+      multisampling.number("unresolved", statistics.multisampling.unresolved);
+    }
+    {
+      Object interleave(report.key("interleave"));
+      interleave.number("traced", statistics.interleave.traced);
+      interleave.number("interpolated", statistics.interleave.interpolated);
+    }
+    {
       Object structure(report.key("structure"));
       structure.number("built", statistics.structure.built);
       structure.number("refitted", statistics.structure.refitted);

@@ -50,6 +50,7 @@ public:
   hrt::gl::RemainingProps Remaining;
   hrt::gl::UserBuffers Buffers;
   std::string Statistics = "{}";
+  bool WarnedOfMultisampling = false; // since it was set
 };
 
 //------------------------------------------------------------------------------
@@ -77,6 +78,11 @@ void vtkHybridRayTracingPass::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "MaximumDepth: " << this->MaximumDepth << "\n";
   const char* const pipelined[] = { "Never", "InAnimations", "Automatic" };
   os << indent << "Pipelined: " << pipelined[this->Pipelined] << "\n";
+  const char* const modes[] = { "Off", "Clamp", "Lazy3x3", "Lazy5x5", "Full3x3", "Full5x5" };
+  os << indent << "Multisampling: " << modes[this->Multisampling] << "\n";
+  os << indent << "Interleave: " << this->Interleave << "\n";
+  os << indent << "InterleaveErrorControl: " << (this->InterleaveErrorControl ? "On" : "Off")
+     << "\n";
   os << indent << "Buffers:";
   for (const std::string& name : this->Internals->Buffers.names())
   {
@@ -183,6 +189,35 @@ void vtkHybridRayTracingPass::SetPipelined(int pipelined)
   if (this->Pipelined != pipelined)
   {
     this->Pipelined = pipelined;
+    this->Modified();
+  }
+}
+
+//------------------------------------------------------------------------------
+void vtkHybridRayTracingPass::SetMultisampling(int mode)
+{
+  if (mode < MultisamplingOff || mode > Full5x5)
+  {
+    vtkErrorMacro("SetMultisampling: " << mode
+                                       << " is none of MultisamplingOff (0), Clamp (1), Lazy3x3 "
+                                          "(2), Lazy5x5 (3), Full3x3 (4) and Full5x5 (5)");
+    return;
+  }
+  if (this->Multisampling != mode)
+  {
+    this->Multisampling = mode;
+    this->Internals->WarnedOfMultisampling = false;
+    this->Modified();
+  }
+}
+
+//------------------------------------------------------------------------------
+void vtkHybridRayTracingPass::SetInterleave(int n)
+{
+  const int clamped = std::min(std::max(n, 1), 16);
+  if (this->Interleave != clamped)
+  {
+    this->Interleave = clamped;
     this->Modified();
   }
 }
@@ -391,6 +426,16 @@ std::string vtkHybridRayTracingPass::TraceFrame(const vtkRenderState* s,
   settings.reflections = this->Reflections;
   settings.refractions = this->Refractions;
   settings.maximumDepth = this->MaximumDepth;
+  settings.multisampling = static_cast<hrt::Multisampling>(this->Multisampling);
+  settings.interleave = this->Interleave;
+  settings.interleaveErrorControl = this->InterleaveErrorControl;
+  if (settings.usedMultisampling() != hrt::Multisampling::Clamp &&
+    !settings.shadesOnCPU() && !in.WarnedOfMultisampling)
+  {
+    in.WarnedOfMultisampling = true;
+    vtkWarningMacro("Multisampling has no effect on what the GPU shades, which always clamps; it "
+                    "holds for what the CPU traces (SetPrimaryShadingToCPU)");
+  }
 
   hrt::gl::FrameRenderer& frame = in.Frame(window);
   settings.pipelined = this->Pipelined == PipelinedInAnimations ||

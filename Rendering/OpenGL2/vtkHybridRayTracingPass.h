@@ -214,6 +214,60 @@ public:
   void SetPipelinedToAutomatic() { this->SetPipelined(PipelinedAutomatic); }
   ///@}
 
+  enum MultisamplingType
+  {
+    MultisamplingOff = 0,
+    Clamp = 1,
+    Lazy3x3 = 2,
+    Lazy5x5 = 3,
+    Full3x3 = 4,
+    Full5x5 = 5
+  };
+
+  ///@{
+  /**
+   * What becomes of a pixel whose ray does not meet the triangle that the rasteriser named, for what
+   * the CPU traces from a rasterised item buffer: its primary shading and the start points of
+   * secondary rays (paper, section 3.1). MultisamplingOff: it stays without colour. Clamp: the hit
+   * of the triangle's plane is moved onto the triangle; no pixel is lost. Lazy3x3, Lazy5x5: the
+   * triangles of the 3x3 or 5x5 pixels around are tried, the nearest that is met wins; where none
+   * is, the colour is interpolated from the pixels around. Full3x3, Full5x5: the same, but for every
+   * pixel, also where its own triangle is met. What RayCasting or DirectRendering find needs none.
+   * Shading on the GPU always clamps: a warning says so when another mode is used with it. A value
+   * out of range is an error and changes nothing. Default: Clamp.
+   */
+  void SetMultisampling(int mode);
+  vtkGetMacro(Multisampling, int);
+  void SetMultisamplingToOff() { this->SetMultisampling(MultisamplingOff); }
+  void SetMultisamplingToClamp() { this->SetMultisampling(Clamp); }
+  void SetMultisamplingToLazy3x3() { this->SetMultisampling(Lazy3x3); }
+  void SetMultisamplingToLazy5x5() { this->SetMultisampling(Lazy5x5); }
+  void SetMultisamplingToFull3x3() { this->SetMultisampling(Full3x3); }
+  void SetMultisamplingToFull5x5() { this->SetMultisampling(Full5x5); }
+  ///@}
+
+  ///@{
+  /**
+   * Interleaved rendering (paper, section 3.1): of what the CPU traces - its primary shading,
+   * secondary rays and, with RayCasting, primary rays - only every n-th column and row of pixels is
+   * traced, and the last ones; the rest is interpolated in a second pass. 1 traces every pixel. What
+   * the GPU shades is not thinned. Range [1, 16], clamped. Default: 1.
+   */
+  void SetInterleave(int n);
+  vtkGetMacro(Interleave, int);
+  ///@}
+
+  ///@{
+  /**
+   * Interpolate only where the samples around a pixel saw the same surfaces and lights and have
+   * nearly the same colour, and trace the other pixels. Off: the paper's plain interpolation, which
+   * blurs. Without effect while Interleave is 1. Default: on.
+   */
+  vtkSetMacro(InterleaveErrorControl, bool);
+  vtkGetMacro(InterleaveErrorControl, bool);
+  vtkBooleanMacro(InterleaveErrorControl, bool);
+  ///@}
+
   ///@{
   /**
    * Per-pixel results to keep besides the picture, by name; nothing is computed that was not asked
@@ -279,6 +333,9 @@ private:
   bool Refractions = true;
   int MaximumDepth = 3;
   int Pipelined = PipelinedAutomatic;
+  int Multisampling = Clamp;
+  int Interleave = 1;
+  bool InterleaveErrorControl = true;
 
   class vtkInternals;
   std::unique_ptr<vtkInternals> Internals;

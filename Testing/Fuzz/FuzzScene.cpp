@@ -194,7 +194,7 @@ void check(const hrt::Snapshot& snapshot, hrt::EmbreeStructure& structure)
   require(hrt::invariants::broken(snapshot));
   structure.update(snapshot);
   hrt::PrimaryHits hits;
-  hrt::castPrimaryRays(snapshot, structure, hits);
+  hrt::castPrimaryRays(snapshot, structure, {}, hits);
   for (const std::uint32_t id : hits.ids)
   {
     require(id <= snapshot.triangleCount ? "" : "a pixel's id is out of range");

@@ -48,7 +48,7 @@ struct Frame
 
   Frame(const Snapshot& s, const Structure& structure)
   {
-    castPrimaryRays(s, structure, this->hits);
+    castPrimaryRays(s, structure, {}, this->hits);
     TracerSettings settings;
     settings.maximumDepth = 5;
     traceImage(s, structure, settings, this->hits.ids.data(), this->image);

@@ -213,7 +213,7 @@ std::size_t differences(const Structure& a, const Structure& b, const std::vecto
 std::vector<glm::vec4> pictureOf(const Snapshot& s, const Structure& structure)
 {
   PrimaryHits hits;
-  castPrimaryRays(s, structure, hits);
+  castPrimaryRays(s, structure, {}, hits);
   SecondaryImage image;
   traceImage(s, structure, TracerSettings(), hits.ids.data(), image);
   return image.pixels;

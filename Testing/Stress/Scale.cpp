@@ -121,7 +121,7 @@ TEST_P(Scale, Row10NothingToSee)
       s->camera.height = size.y;
       const std::size_t pixels = std::size_t(size.x) * size.y;
       PrimaryHits hits;
-      castPrimaryRays(*s, *structure, hits);
+      castPrimaryRays(*s, *structure, {}, hits);
       SecondaryImage image;
       traceImage(*s, *structure, TracerSettings(), hits.ids.data(), image);
       ASSERT_EQ(hits.ids.size(), pixels);

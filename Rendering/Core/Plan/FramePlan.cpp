@@ -106,6 +106,7 @@ public:
     return cause            ? cause
       : this->C.background ? "the background changed"
       : this->Settings.secondary ? "the reflection or refraction settings changed"
+      : this->Settings.sampling  ? "the multisampling or interleaving settings changed"
                                  : nullptr;
   }
 
@@ -417,7 +418,11 @@ const char* stageName(Stage stage)
 SettingsChanges compareSettings(const Settings& before, const Settings& now)
 {
   SettingsChanges changes;
-  changes.visibility = before.visibility != now.visibility;
+  const bool interleave = before.interleave != now.interleave ||
+    (now.interleave > 1 && before.interleaveErrorControl != now.interleaveErrorControl);
+  changes.visibility = before.visibility != now.visibility ||
+    (now.visibility == Visibility::RayCasting && interleave);
+  changes.sampling = interleave || before.usedMultisampling() != now.usedMultisampling();
   changes.structure = before.accelerator != now.accelerator;
   changes.shading = before.shadows != now.shadows || before.primaryShading != now.primaryShading ||
     (now.shadows == ShadowMode::ShadowMaps &&

@@ -4,6 +4,7 @@
 #pragma once
 
 #include "Rendering/Core/Snapshot.h"
+#include "Rendering/Core/Tracing/Multisampling.h"
 
 #include <array>
 #include <cstdint>
@@ -48,6 +49,9 @@ struct Settings
   int maximumDepth = 3;          // bounces of a secondary ray
   int shadowMapResolution = 2048;// texels along a side of one map face
   bool pipelined = false;        // in animations, show a frame while the next one is traced
+  Multisampling multisampling = Multisampling::Clamp;
+  int interleave = 1;            // every n-th column and row is traced
+  bool interleaveErrorControl = true;
 
   // Shadow rays end at the CPU, and so must be shaded what they were cast for.
   bool shadesOnCPU() const
@@ -61,6 +65,11 @@ struct Settings
       !(shadesOnCPU() && visibility == Visibility::RayCasting);
   }
   bool usesShadowRays() const { return shadows != ShadowMode::Off && !usesShadowMaps(); }
+  // What rays and direct rendering find needs no repair.
+  Multisampling usedMultisampling() const
+  {
+    return visibility == Visibility::ItemBuffer ? multisampling : Multisampling::Clamp;
+  }
 };
 
 // Which results a change of the settings outdates.
@@ -69,6 +78,7 @@ struct SettingsChanges
   bool visibility = false; // how the first hits are found
   bool shading = false;    // where and with which shadows they are shaded
   bool secondary = false;  // reflections, refractions, depth
+  bool sampling = false;   // from which pixels and triangles rays start on the CPU
   bool structure = false;  // the kind of ray structure
 };
 SettingsChanges compareSettings(const Settings& before, const Settings& now);

@@ -95,7 +95,10 @@ void Lighting::addLights(const SurfacePoint& point, const shading::HrtSurface& c
     {
       if (portion != glm::vec3(0.0f))
       {
-        target.sum += portion * this->shareFromMap(point, i);
+        const float share = this->shareFromMap(point, i);
+        target.sum += portion * share;
+        target.signature += signatureOf(PathEvent::Light, target.bounces, i,
+          share == 0.0f ? 0 : share == 1.0f ? 1 : 2);
       }
       continue;
     }
@@ -110,9 +113,13 @@ void Lighting::addLights(const SurfacePoint& point, const shading::HrtSurface& c
       queue.rays.push_back(ray);
       queue.portions.push_back(portion);
       queue.pixels.push_back(target.pixel);
+      queue.lights.push_back(static_cast<std::uint32_t>(i));
+      queue.bounces.push_back(static_cast<std::uint8_t>(target.bounces));
       continue;
     }
     ++shadowRays.answered;
+    target.signature +=
+      signatureOf(PathEvent::Light, target.bounces, i, seen == Sight::Free ? 1 : 0);
     if (seen == Sight::Free)
     {
       target.sum += portion;
@@ -149,7 +156,7 @@ Lighting::Sight Lighting::sight(const SurfacePoint& point, const Light& light, R
 
 // A translucent surface of opacity a and colour C lets (1 - a) (1 - a + a C) of the light through:
 // all of it at a = 0, none at a = 1, and the more of its colour the denser it is.
-glm::vec3 Lighting::transmittance(Ray ray) const
+glm::vec3 Lighting::transmittance(Ray ray, int bounces, PathSignature& signature) const
 {
   glm::vec3 share(1.0f);
   for (int veil = 0; veil < kMostVeils; ++veil)
@@ -162,6 +169,7 @@ glm::vec3 Lighting::transmittance(Ray ray) const
     const SurfacePoint point = this->Points.at(hit, ray.direction);
     if (isTranslucent(this->Scene.parts[point.part]))
     {
+      signature += signatureOf(PathEvent::Veil, bounces, point.part, point.frontSide ? 1 : 0);
       const float a = glm::clamp(point.opacity, 0.0f, 1.0f);
       share *= (1.0f - a) * (1.0f - a + a * point.diffuseColor);
     }
@@ -205,21 +213,28 @@ float Lighting::visibleShare(const SurfacePoint& point, std::size_t light) const
   {
     return 1.0f;
   }
-  const glm::vec3 share = this->transmittance(ray);
+  PathSignature unused = 0;
+  const glm::vec3 share = this->transmittance(ray, 0, unused);
   return (share.x + share.y + share.z) / 3.0f;
 }
 
-void Lighting::flush(ShadowQueue& queue, RayOrder order, std::vector<glm::vec3>& sums) const
+void Lighting::flush(ShadowQueue& queue, RayOrder order, std::vector<glm::vec3>& sums,
+  std::vector<PathSignature>& signatures) const
 {
   std::vector<std::uint8_t> blocked(queue.rays.size());
   this->Rays.occluded(queue.rays.data(), blocked.data(), queue.rays.size(), order);
   const bool veils = this->Settings.tintedShadows && this->AnyTranslucent;
   for (std::size_t i = 0; i < queue.rays.size(); ++i)
   {
+    const std::uint32_t pixel = queue.pixels[i];
+    const int bounces = queue.bounces[i];
+    signatures[pixel] +=
+      signatureOf(PathEvent::Light, bounces, queue.lights[i], blocked[i] ? 0 : 1);
     if (!blocked[i])
     {
-      sums[queue.pixels[i]] += veils ? queue.portions[i] * this->transmittance(queue.rays[i])
-                                     : queue.portions[i];
+      sums[pixel] += veils
+        ? queue.portions[i] * this->transmittance(queue.rays[i], bounces, signatures[pixel])
+        : queue.portions[i];
     }
   }
   queue.clear();

@@ -3,6 +3,7 @@
 // the rest waits in a queue whose rays are traced together.
 #pragma once
 
+#include "Rendering/Core/Tracing/PathSignature.h"
 #include "Rendering/Core/Tracing/Surface.h"
 #include "Rendering/Core/Tracing/Tracer.h"
 
@@ -18,6 +19,8 @@ struct ShadowQueue
   std::vector<Ray> rays;
   std::vector<glm::vec3> portions;    // what the pixel gains when the ray passes
   std::vector<std::uint32_t> pixels;  // index into the caller's sums
+  std::vector<std::uint32_t> lights;
+  std::vector<std::uint8_t> bounces;  // before the ray
 
   bool empty() const { return this->rays.empty(); }
   void clear()
@@ -25,6 +28,8 @@ struct ShadowQueue
     this->rays.clear();
     this->portions.clear();
     this->pixels.clear();
+    this->lights.clear();
+    this->bounces.clear();
   }
 };
 
@@ -41,6 +46,8 @@ public:
     std::uint32_t pixel;
     glm::vec3 weight;
     glm::vec3& sum; // of the pixel
+    PathSignature& signature; // likewise
+    int bounces = 0;
     // The camera sees the point directly: shadow maps, where there are some, decide its shadows.
     bool direct = false;
   };
@@ -55,7 +62,8 @@ public:
     ShadowQueue& queue, RayCount& shadowRays) const;
 
   // Traces the queue's rays and adds what passes; the queue is empty afterwards.
-  void flush(ShadowQueue& queue, RayOrder order, std::vector<glm::vec3>& sums) const;
+  void flush(ShadowQueue& queue, RayOrder order, std::vector<glm::vec3>& sums,
+    std::vector<PathSignature>& signatures) const;
 
   // The share of one light that reaches a point that the camera sees.
   float visibleShare(const SurfacePoint& point, std::size_t light) const;
@@ -73,7 +81,7 @@ private:
     Open     // `ray` has to be traced
   };
   Sight sight(const SurfacePoint& point, const Light& light, Ray& ray) const;
-  glm::vec3 transmittance(Ray ray) const;
+  glm::vec3 transmittance(Ray ray, int bounces, PathSignature& signature) const;
   float shareFromMap(const SurfacePoint& point, std::size_t light) const;
 
   const Snapshot& Scene;

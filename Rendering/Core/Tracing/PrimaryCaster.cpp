@@ -1,5 +1,5 @@
 // Primary visibility by rays: what the rasteriser's item buffer holds, found by the tracer's own means.
-#include "Rendering/Core/Tracing/TileTracer.h"
+#include "Rendering/Core/Tracing/Interleaving.h"
 #include "Rendering/Core/Tracing/Tiles.h"
 #include "Rendering/Core/Tracing/Tracer.h"
 
@@ -25,38 +25,21 @@ public:
   PrimaryCaster(const TracedFrame& frame, PrimaryHits& hits)
     : Frame(frame)
     , Hits(hits)
-    , ToClip(frame.snapshot.camera.viewToClip * frame.snapshot.camera.worldToView)
+    , Planes(frame.snapshot)
   {
-    this->ToClip[3] = this->ToClip * glm::dvec4(frame.snapshot.origin, 1.0);
   }
 
   // A ray cut by the near and the far plane; false when nothing is left of it.
   bool clip(Ray& ray) const
   {
-    const glm::dvec4 from = this->ToClip * glm::dvec4(ray.origin, 1.0);
-    const glm::dvec4 along = this->ToClip * glm::dvec4(ray.direction, 0.0);
-    double first = 0.0, last = ray.tMaximum;
-    // Inside, w + z and w - z are positive; each is linear along the ray.
-    for (const double sign : { 1.0, -1.0 })
+    double first = 0.0, last = 0.0;
+    if (!this->Planes.between(ray, first, last))
     {
-      const double start = from.w + sign * from.z;
-      const double slope = along.w + sign * along.z;
-      if (slope > 0.0)
-      {
-        first = std::max(first, -start / slope);
-      }
-      else if (slope < 0.0)
-      {
-        last = std::min(last, -start / slope);
-      }
-      else if (start < 0.0)
-      {
-        return false;
-      }
+      return false;
     }
     ray.origin += first * ray.direction;
     ray.tMaximum = last - first;
-    return first < last;
+    return true;
   }
 
   void cast(const std::vector<std::uint32_t>& pixels, RayCount& count)
@@ -74,6 +57,36 @@ public:
     {
       this->store(this->Pixels[i], this->Rays[i], this->Found[i], count);
     }
+  }
+
+  // A pixel between samples from what they show; false when its own ray has to decide.
+  bool infer(int column, int row, const Lattice& lattice, bool errorControl, RayCount& count)
+  {
+    const Lattice::Around around = lattice.around(column, row);
+    const std::uint32_t nearest = around.neighbours[around.nearest].pixel;
+    const std::uint32_t id = this->Hits.ids[nearest];
+    const bool agreed = std::all_of(around.neighbours.begin(),
+      around.neighbours.begin() + around.count,
+      [this, id](const Lattice::Around::Neighbour& n) { return this->Hits.ids[n.pixel] == id; });
+    if (errorControl && !agreed)
+    {
+      return false;
+    }
+    ++count.asked;
+    ++count.answered;
+    const std::size_t pixel = std::size_t(row) * this->Frame.snapshot.camera.width + column;
+    this->Hits.ids[pixel] = id;
+    this->Hits.clipDepths[pixel] = this->Hits.clipDepths[nearest];
+    const Ray ray = this->Frame.primaryRay(static_cast<std::uint32_t>(pixel));
+    Hit hit;
+    // A triangle is convex: what lies between points of it belongs to it. Beyond its edge, where plain
+    // interleaving puts it, its plane may be anywhere: there the sample's depth stays.
+    if (id != 0 && agreed && this->Frame.surfaces.primaryHit(id - 1, ray, hit))
+    {
+      this->Hits.clipDepths[pixel] =
+        this->Planes.depth(this->Frame.surfaces.at(hit, ray.direction).position);
+    }
+    return true;
   }
 
 private:
@@ -107,9 +120,8 @@ private:
       const SurfacePoint point = this->Frame.surfaces.at(hit, ray.direction);
       if (this->shown(point))
       {
-        const glm::dvec4 clip = this->ToClip * glm::dvec4(point.position, 1.0);
         this->Hits.ids[pixel] = hit.triangle + 1;
-        this->Hits.clipDepths[pixel] = glm::clamp(clip.z / clip.w, -1.0, 1.0);
+        this->Hits.clipDepths[pixel] = this->Planes.depth(point.position);
         return;
       }
       const double left = ray.tMaximum - hit.t;
@@ -123,44 +135,74 @@ private:
 
   const TracedFrame& Frame;
   PrimaryHits& Hits;
-  glm::dmat4 ToClip; // from coordinates relative to the snapshot's origin
+  ClipPlanes Planes;
   std::vector<Ray> Rays;
   std::vector<std::uint32_t> Pixels;
   std::vector<Hit> Found;
 };
 
-} // namespace
-
-RayCounters castPrimaryRays(
-  const Snapshot& snapshot, const Structure& structure, PrimaryHits& hits)
+// A thread's own.
+struct Local
 {
-  const std::size_t pixels = std::size_t(snapshot.camera.width) * snapshot.camera.height;
-  hits.ids.assign(pixels, 0);
-  hits.clipDepths.assign(pixels, 1.0);
-  const TracerSettings settings;
-  const TracedFrame frame(snapshot, structure, settings);
-  struct Local
-  {
-    PrimaryCaster caster;
-    RayCount count;
-    std::vector<std::uint32_t> pixels;
-  };
-  tbb::enumerable_thread_specific<Local> locals(
-    [&] { return Local{ PrimaryCaster(frame, hits), {}, {} }; });
-  const Camera& camera = snapshot.camera;
-  using TileRange = tbb::blocked_range2d<int>;
-  tbb::parallel_for(TileRange(0, tilesAlong(camera.height), 1, 0, tilesAlong(camera.width), 1),
-    [&](const TileRange& range) {
+  PrimaryCaster caster;
+  RayCount count;
+  std::vector<std::uint32_t> pixels;
+};
+
+// Calls visit(local, columns, rows) for every tile of a picture or lattice, on all threads.
+template <class Locals, class Visit>
+void forEachTile(int columns, int rows, Locals& locals, Visit visit)
+{
+  using Range = tbb::blocked_range2d<int>;
+  tbb::parallel_for(
+    Range(0, tilesAlong(rows), 1, 0, tilesAlong(columns), 1), [&](const Range& range) {
       Local& local = locals.local();
       for (int row = range.rows().begin(); row < range.rows().end(); ++row)
       {
         for (int column = range.cols().begin(); column < range.cols().end(); ++column)
         {
-          tilePixels(camera, column, row, local.pixels);
+          local.pixels.clear();
+          visit(local, TileSpan(column, columns), TileSpan(row, rows));
           local.caster.cast(local.pixels, local.count);
         }
       }
     });
+}
+
+} // namespace
+
+RayCounters castPrimaryRays(const Snapshot& snapshot, const Structure& structure,
+  const TracerSettings& settings, PrimaryHits& hits)
+{
+  const Camera& camera = snapshot.camera;
+  const std::size_t pixels = std::size_t(camera.width) * camera.height;
+  hits.ids.assign(pixels, 0);
+  hits.clipDepths.assign(pixels, 1.0);
+  const TracedFrame frame(snapshot, structure, settings);
+  const Lattice lattice(camera, settings.interleave);
+  tbb::enumerable_thread_specific<Local> locals(
+    [&] { return Local{ PrimaryCaster(frame, hits), {}, {} }; });
+  forEachTile(lattice.columns(), lattice.rows(), locals,
+    [&](Local& local, const TileSpan& columns, const TileSpan& rows) {
+      forEachInBlocks(columns.count, rows.count, [&](int x, int y) {
+        local.pixels.push_back(lattice.pixel(columns.first + x, rows.first + y));
+      });
+    });
+  if (settings.interleave > 1)
+  {
+    forEachTile(camera.width, camera.height, locals,
+      [&](Local& local, const TileSpan& columns, const TileSpan& rows) {
+        forEachInBlocks(columns.count, rows.count, [&](int x, int y) {
+          const int column = columns.first + x, row = rows.first + y;
+          if (!lattice.isSample(column, row) &&
+            !local.caster.infer(
+              column, row, lattice, settings.interleaveErrorControl, local.count))
+          {
+            local.pixels.push_back(static_cast<std::uint32_t>(row * camera.width + column));
+          }
+        });
+      });
+  }
   RayCounters sum;
   for (const Local& local : locals)
   {

@@ -113,6 +113,22 @@ bool Surfaces::primaryHit(TriangleId id, const Ray& ray, Hit& hit) const
     hit);
 }
 
+bool Surfaces::exactHit(
+  TriangleId id, const ShearedRay& ray, double tMaximum, Hit& hit) const
+{
+  const std::size_t index = this->Scene.partOf(id);
+  const Part& part = this->Scene.parts[index];
+  TriangleHit found;
+  if (!ray.hitsTriangle(
+        sceneCorners(*part.geometry, this->Placements[index].toScene, indexInPart(part, id)),
+        tMaximum, found))
+  {
+    return false;
+  }
+  hit = { id, found.t, found.u, found.v };
+  return true;
+}
+
 SurfacePoint Surfaces::at(const Hit& hit, const glm::dvec3& direction) const
 {
   SurfacePoint point;

@@ -48,6 +48,9 @@ public:
   // moved into the triangle. False when the plane is seen edge-on or lies behind the ray.
   bool primaryHit(TriangleId id, const Ray& ray, Hit& hit) const;
 
+  // The exact kernel's answer for one triangle: a hit within the triangle, 0 < t < tMaximum.
+  bool exactHit(TriangleId id, const ShearedRay& ray, double tMaximum, Hit& hit) const;
+
   // The surface at a hit, as seen along the ray's direction.
   SurfacePoint at(const Hit& hit, const glm::dvec3& direction) const;
 

@@ -34,6 +34,7 @@ TracedFrame::TracedFrame(
   , structure(rayStructure)
   , settings(tracerSettings)
   , surfaces(s)
+  , firstHits(s, surfaces, tracerSettings.multisampling)
   , lighting(s, surfaces, rayStructure, tracerSettings)
   , rays(s.camera.worldRays(s.origin))
   , viewer(glm::dvec3(glm::inverse(s.camera.worldToView)[3]) - s.origin)
@@ -49,6 +50,12 @@ bool TracedFrame::isMirror(const Material& material) const
 {
   return material.isMirror() && this->settings.reflections && this->settings.maximumDepth > 0 &&
     !this->isGlass(material);
+}
+
+bool TracedFrame::hasOptics(std::size_t part) const
+{
+  const Material& material = this->snapshot.parts[part].material;
+  return this->isGlass(material) || this->isMirror(material);
 }
 
 Ray TracedFrame::primaryRay(std::uint32_t pixel) const
@@ -75,22 +82,25 @@ void TileTracer::trace(const std::vector<std::uint32_t>& pixels, Wanted wanted,
   // No hit: nothing to add. In the whole picture alpha 0 says so, in the secondary image the
   // primary colour stays.
   this->Alphas.assign(pixels.size(), wanted == Wanted::Everything ? 0.0f : 1.0f);
+  this->Parts.assign(pixels.size(), kNoPart);
+  this->Missed.assign(pixels.size(), 0);
+  this->Signatures.assign(pixels.size(), 0);
   this->Counters = RayCounters();
   for (std::size_t i = 0; i < pixels.size(); ++i)
   {
-    this->start(static_cast<std::uint32_t>(i), pixels[i], ids[pixels[i]], wanted, result);
+    this->start(static_cast<std::uint32_t>(i), pixels[i], wanted, ids, result);
   }
   // Neighbours' first shadow and mirror rays run side by side; later ones scatter.
   RayOrder order = RayOrder::Coherent;
-  this->Frame.lighting.flush(this->Shadows, order, this->Sums);
+  this->Frame.lighting.flush(this->Shadows, order, this->Sums, this->Signatures);
   while (!this->Reflected.rays.empty() || !this->Refracted.rays.empty())
   {
     std::swap(this->NowReflected, this->Reflected);
     std::swap(this->NowRefracted, this->Refracted);
-    this->follow(this->NowReflected, this->Reflected, this->Counters.reflection, order);
-    this->follow(this->NowRefracted, this->Refracted, this->Counters.refraction,
-      RayOrder::Incoherent);
-    this->Frame.lighting.flush(this->Shadows, order, this->Sums);
+    this->follow(this->NowReflected, Kind::Reflected, this->Counters.reflection, order);
+    this->follow(
+      this->NowRefracted, Kind::Refracted, this->Counters.refraction, RayOrder::Incoherent);
+    this->Frame.lighting.flush(this->Shadows, order, this->Sums, this->Signatures);
     order = RayOrder::Incoherent;
   }
   for (std::size_t i = 0; i < pixels.size(); ++i)
@@ -100,41 +110,58 @@ void TileTracer::trace(const std::vector<std::uint32_t>& pixels, Wanted wanted,
   result.rays += this->Counters;
 }
 
-// The surface that a pixel shows, as the visibility engine has found it.
-void TileTracer::start(std::uint32_t index, std::uint32_t pixel, std::uint32_t id, Wanted wanted,
-  SecondaryResult& result)
+TileTracer::Note TileTracer::note(std::size_t index) const
 {
-  if (id == 0)
-  {
-    return;
-  }
-  const TriangleId triangle = id - 1;
-  const Snapshot& snapshot = this->Frame.snapshot;
-  if (triangle >= snapshot.triangleCount)
-  {
-    ++result.invalidIds;
-    return;
-  }
-  const Material& material = snapshot.parts[snapshot.partOf(triangle)].material;
-  const bool glass = this->Frame.isGlass(material);
-  const bool mirror = this->Frame.isMirror(material);
-  if (wanted == Wanted::SecondaryOnly && !glass && !mirror)
+  return { this->Parts[index], this->Missed[index] != 0, this->Signatures[index] };
+}
+
+// Whether one of the triangles that the pixel may turn out to show is a mirror's or glass.
+bool TileTracer::mayShowOptics(std::uint32_t pixel, const std::uint32_t* ids) const
+{
+  FirstHits::Candidates candidates;
+  this->Frame.firstHits.gather(ids, pixel, candidates);
+  return std::any_of(candidates.triangles.begin(),
+    candidates.triangles.begin() + candidates.count, [this](TriangleId triangle) {
+      return this->Frame.hasOptics(this->Frame.snapshot.partOf(triangle));
+    });
+}
+
+// The surface that a pixel shows, as the visibility engine has found it.
+void TileTracer::start(std::uint32_t index, std::uint32_t pixel, Wanted wanted,
+  const std::uint32_t* ids, SecondaryResult& result)
+{
+  result.invalidIds += ids[pixel] > this->Frame.snapshot.triangleCount ? 1 : 0;
+  if (wanted == Wanted::SecondaryOnly && !this->mayShowOptics(pixel, ids))
   {
     return;
   }
   const Ray ray = this->Frame.primaryRay(pixel);
   Hit hit;
-  if (!this->Frame.surfaces.primaryHit(triangle, ray, hit))
+  const FirstHits::Outcome outcome =
+    this->Frame.firstHits.find(ids, pixel, ray, hit, result.multisampling);
+  this->Missed[index] = outcome == FirstHits::Outcome::Missed;
+  if (outcome != FirstHits::Outcome::Found)
   {
     return;
   }
-  result.pixels += glass || mirror ? 1 : 0;
   const SurfacePoint point = this->Frame.surfaces.at(hit, ray.direction);
+  const Material& material = *point.material;
+  const bool mirror = this->Frame.isMirror(material);
+  const bool optics = mirror || this->Frame.isGlass(material);
+  if (wanted == Wanted::SecondaryOnly && !optics)
+  {
+    return;
+  }
+  ++result.interleave.traced;
+  result.pixels += optics ? 1 : 0;
+  this->Parts[index] = static_cast<std::uint32_t>(point.part);
   Path eye;
   eye.pixel = index;
   if (wanted == Wanted::SecondaryOnly && mirror)
   {
     this->Alphas[index] = 1.0f - material.reflectance;
+    this->Signatures[index] +=
+      signatureOf(PathEvent::SeenDirectly, 0, point.part, point.frontSide ? 1 : 0);
     this->startMirror(point, ray.direction, eye);
     return;
   }
@@ -142,7 +169,7 @@ void TileTracer::start(std::uint32_t index, std::uint32_t pixel, std::uint32_t i
   // As VTK does for every projection, the viewer of a directly seen surface is taken to be at the
   // view coordinates' origin.
   const glm::dvec3 toViewer = glm::normalize(this->Frame.viewer - point.position);
-  this->arrive(point, ray.direction, toViewer, eye, this->Refracted);
+  this->arrive(point, ray.direction, toViewer, eye, Kind::Eye);
 }
 
 void TileTracer::startMirror(
@@ -165,8 +192,7 @@ void TileTracer::spawn(
 
 // Takes the queue's rays one generation on. Rays that are too deep or weigh too little are answered
 // with nothing.
-void TileTracer::follow(
-  PathQueue& queue, PathQueue& sameKind, RayCount& count, RayOrder order)
+void TileTracer::follow(PathQueue& queue, Kind kind, RayCount& count, RayOrder order)
 {
   std::size_t kept = 0;
   for (std::size_t i = 0; i < queue.rays.size(); ++i)
@@ -191,19 +217,24 @@ void TileTracer::follow(
     const glm::dvec3 direction = queue.rays[i].direction;
     if (!this->Hits[i].valid())
     {
-      this->Sums[path.pixel] += path.weight * this->background(direction);
+      this->addBackground(direction, path, path.weight);
       continue;
     }
-    this->arrive(this->Frame.surfaces.at(this->Hits[i], direction), direction, -direction, path,
-      sameKind);
+    this->arrive(
+      this->Frame.surfaces.at(this->Hits[i], direction), direction, -direction, path, kind);
   }
   queue.clear();
 }
 
 // Adds a surface's own light and sends on the rays that it asks for.
 void TileTracer::arrive(const SurfacePoint& point, const glm::dvec3& direction,
-  const glm::dvec3& toViewer, const Path& path, PathQueue& sameKind)
+  const glm::dvec3& toViewer, const Path& path, Kind kind)
 {
+  const PathEvent event = kind == Kind::Eye ? PathEvent::SeenDirectly
+    : kind == Kind::Reflected               ? PathEvent::Reflected
+                                            : PathEvent::Refracted;
+  this->Signatures[path.pixel] +=
+    signatureOf(event, path.bounces, point.part, point.frontSide ? 1 : 0);
   if (this->Frame.isGlass(*point.material))
   {
     this->arriveAtGlass(point, direction, toViewer, path);
@@ -214,7 +245,8 @@ void TileTracer::arrive(const SurfacePoint& point, const glm::dvec3& direction,
   const float mirror =
     this->Frame.isMirror(*point.material) ? point.material->reflectance : 0.0f;
   const Lighting::Target target{ path.pixel, path.weight * (opacity * (1.0f - mirror)),
-    this->Sums[path.pixel], path.bounces == 0 && path.layers == 0 };
+    this->Sums[path.pixel], this->Signatures[path.pixel], path.bounces,
+    path.bounces == 0 && path.layers == 0 };
   this->Frame.lighting.shade(point, toViewer, target, this->Shadows, this->Counters.shadow);
   if (mirror > 0.0f)
   {
@@ -224,19 +256,20 @@ void TileTracer::arrive(const SurfacePoint& point, const glm::dvec3& direction,
   }
   if (opacity < 1.0f)
   {
-    this->passThrough(point, direction, path, sameKind);
+    this->passThrough(point, direction, path, kind);
   }
 }
 
 // Straight on behind a translucent surface: the same ray prolonged, no new bounce.
 void TileTracer::passThrough(const SurfacePoint& point, const glm::dvec3& direction,
-  const Path& path, PathQueue& sameKind)
+  const Path& path, Kind kind)
 {
+  PathQueue& sameKind = kind == Kind::Reflected ? this->Reflected : this->Refracted;
   Path next = path;
   next.weight *= 1.0f - point.opacity;
   if (++next.layers > kMostLayers)
   {
-    this->Sums[path.pixel] += next.weight * this->background(direction);
+    this->addBackground(direction, path, next.weight);
     return;
   }
   sameKind.rays.push_back(leave(point, direction));
@@ -250,7 +283,9 @@ void TileTracer::arriveAtGlass(const SurfacePoint& point, const glm::dvec3& dire
 {
   const Boundary boundary = boundaryAt(point, direction);
   this->Frame.lighting.highlights(point, toViewer,
-    { path.pixel, path.weight, this->Sums[path.pixel] }, this->Shadows, this->Counters.shadow);
+    { path.pixel, path.weight, this->Sums[path.pixel], this->Signatures[path.pixel],
+      path.bounces },
+    this->Shadows, this->Counters.shadow);
   const bool reflections = this->Frame.settings.reflections;
   const auto reflectance = static_cast<float>(boundary.reflectance);
   if (reflections)
@@ -264,6 +299,13 @@ void TileTracer::arriveAtGlass(const SurfacePoint& point, const glm::dvec3& dire
     this->spawn(
       this->Refracted, leave(point, boundary.refracted), path, share * point.diffuseColor);
   }
+}
+
+void TileTracer::addBackground(
+  const glm::dvec3& direction, const Path& path, const glm::vec3& weight)
+{
+  this->Sums[path.pixel] += weight * this->background(direction);
+  this->Signatures[path.pixel] += signatureOf(PathEvent::Background, path.bounces, 0, 0);
 }
 
 glm::vec3 TileTracer::background(const glm::dvec3& direction) const

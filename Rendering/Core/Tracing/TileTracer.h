@@ -5,7 +5,9 @@
 // fixed order.
 #pragma once
 
+#include "Rendering/Core/Tracing/FirstHits.h"
 #include "Rendering/Core/Tracing/Lighting.h"
+#include "Rendering/Core/Tracing/PathSignature.h"
 #include "Rendering/Core/Tracing/Surface.h"
 #include "Rendering/Core/Tracing/Tracer.h"
 
@@ -23,6 +25,7 @@ struct TracedFrame
 
   bool isGlass(const Material& material) const;
   bool isMirror(const Material& material) const; // glass comes first
+  bool hasOptics(std::size_t part) const;        // either of them
 
   // The primary ray through the centre of a pixel, row 0 at the bottom; unit direction.
   Ray primaryRay(std::uint32_t pixel) const;
@@ -31,6 +34,7 @@ struct TracedFrame
   const Structure& structure;
   const TracerSettings& settings;
   Surfaces surfaces;
+  FirstHits firstHits;
   Lighting lighting;
   CameraRays rays;
   glm::dvec3 viewer; // the view coordinates' origin, relative to the scene's
@@ -41,11 +45,24 @@ class TileTracer
 public:
   explicit TileTracer(const TracedFrame& frame);
 
+  // What the tracer learns of a pixel beside its colour.
+  struct Note
+  {
+    // Of the surface that the pixel shows; kNoPart when it shows none whose light is wanted.
+    std::uint32_t part = kNoPart;
+    bool missed = false; // see FirstHits
+    PathSignature signature = 0;
+  };
+  static constexpr std::uint32_t kNoPart = 0xffffffff;
+
   // The pixels with the given numbers in the whole picture, which `ids` and `image` are of. A pixel's
   // result depends on no other pixel of the list; neighbours in it should be neighbours in the
   // picture.
   void trace(const std::vector<std::uint32_t>& pixels, Wanted wanted, const std::uint32_t* ids,
     SecondaryImage& image, SecondaryResult& result);
+
+  // Of the pixel at that index of the last call's list.
+  Note note(std::size_t index) const;
 
 private:
   // A ray on its way and what its light is worth.
@@ -68,22 +85,33 @@ private:
     }
   };
 
-  void start(std::uint32_t index, std::uint32_t pixel, std::uint32_t id, Wanted wanted,
+  void start(std::uint32_t index, std::uint32_t pixel, Wanted wanted, const std::uint32_t* ids,
     SecondaryResult& result);
+  bool mayShowOptics(std::uint32_t pixel, const std::uint32_t* ids) const;
   void startMirror(const SurfacePoint& point, const glm::dvec3& direction, const Path& path);
+  enum class Kind
+  {
+    Eye,
+    Reflected,
+    Refracted
+  };
   void arrive(const SurfacePoint& point, const glm::dvec3& direction,
-    const glm::dvec3& toViewer, const Path& path, PathQueue& sameKind);
+    const glm::dvec3& toViewer, const Path& path, Kind kind);
   void arriveAtGlass(const SurfacePoint& point, const glm::dvec3& direction,
     const glm::dvec3& toViewer, const Path& path);
   void passThrough(const SurfacePoint& point, const glm::dvec3& direction, const Path& path,
-    PathQueue& sameKind);
+    Kind kind);
   void spawn(PathQueue& queue, const Ray& ray, const Path& path, const glm::vec3& share);
-  void follow(PathQueue& queue, PathQueue& sameKind, RayCount& count, RayOrder order);
+  void follow(PathQueue& queue, Kind kind, RayCount& count, RayOrder order);
+  void addBackground(const glm::dvec3& direction, const Path& path, const glm::vec3& weight);
   glm::vec3 background(const glm::dvec3& direction) const;
 
   const TracedFrame& Frame;
   std::vector<glm::vec3> Sums;
   std::vector<float> Alphas;
+  std::vector<std::uint32_t> Parts;
+  std::vector<std::uint8_t> Missed;
+  std::vector<PathSignature> Signatures;
   PathQueue Reflected, Refracted;         // rays of the generation to come
   PathQueue NowReflected, NowRefracted;   // of the one being traced
   std::vector<Hit> Hits;

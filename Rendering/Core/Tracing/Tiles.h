@@ -2,11 +2,7 @@
 // neighbours, which packets gain from.
 #pragma once
 
-#include "Rendering/Core/Snapshot.h"
-
 #include <algorithm>
-#include <cstdint>
-#include <vector>
 
 namespace hrt
 {
@@ -17,6 +13,18 @@ constexpr int kTile = 32;
 
 // Pixels along a side of the blocks whose rays are neighbours in a stream: 16 rays, one packet.
 constexpr int kBlock = 4;
+
+// The range of samples of one tile along one axis.
+struct TileSpan
+{
+  TileSpan(int tile, int samples)
+    : first(tile * kTile)
+    , count(std::min(kTile, samples - tile * kTile))
+  {
+  }
+  int first;
+  int count;
+};
 
 constexpr int tilesAlong(int samples)
 {
@@ -40,18 +48,6 @@ void forEachInBlocks(int width, int height, Visit visit)
       }
     }
   }
-}
-
-// Numbers of the pixels of one tile, row 0 at the bottom, in the order of their rays.
-inline void tilePixels(
-  const Camera& camera, int tileColumn, int tileRow, std::vector<std::uint32_t>& pixels)
-{
-  const int left = tileColumn * kTile, bottom = tileRow * kTile;
-  pixels.clear();
-  forEachInBlocks(std::min(kTile, camera.width - left), std::min(kTile, camera.height - bottom),
-    [&](int x, int y) {
-      pixels.push_back(static_cast<std::uint32_t>((bottom + y) * camera.width + left + x));
-    });
 }
 
 } // namespace hrt

@@ -7,6 +7,7 @@
 #include "Rendering/Core/Shading/ShadowLookup.h"
 #include "Rendering/Core/Snapshot.h"
 #include "Rendering/Core/Structures/Structure.h"
+#include "Rendering/Core/Tracing/Multisampling.h"
 
 #include <cstdint>
 #include <memory>
@@ -24,6 +25,13 @@ struct TracerSettings
   bool tintedShadows = false; // translucent surfaces take their share of a shadow ray's light
   bool reflections = true;
   bool refractions = true;
+  Multisampling multisampling = Multisampling::Clamp; // of the first hits: see Multisampling.h
+  // Every n-th column and row is traced, and the last ones; what lies between is interpolated in a
+  // second pass. At least 1.
+  int interleave = 1;
+  // Between samples that saw different things the pixels are traced; otherwise the paper's plain
+  // interpolation. See Interleaving.h.
+  bool interleaveErrorControl = true;
 };
 
 // Rays by class, for the statistics: how many were asked for and how many had to be traced;
@@ -70,9 +78,11 @@ struct PrimaryHits
 };
 
 // Primary visibility by rays through the pixels' centres: the nearest triangle, between the near and
-// the far plane, of a part that the camera sees, on a side that is not culled.
-RayCounters castPrimaryRays(
-  const Snapshot& snapshot, const Structure& structure, PrimaryHits& hits);
+// the far plane, of a part that the camera sees, on a side that is not culled. Of the settings only
+// the interleaving counts: a pixel between the samples shows what the nearest sample shows; with error
+// control only where the samples around it show one triangle or nothing, elsewhere its ray is traced.
+RayCounters castPrimaryRays(const Snapshot& snapshot, const Structure& structure,
+  const TracerSettings& settings, PrimaryHits& hits);
 
 // The secondary image: for each pixel of the camera's viewport, row 0 at the bottom, the radiance
 // to add (rgb) and the share of the primary colour that stays (a). Pixels without mirror or glass
@@ -91,15 +101,52 @@ enum class Wanted : std::uint8_t
   SecondaryOnly // what is to be added to a primary image: see SecondaryImage
 };
 
+// What became of the pixels whose ray does not meet the triangle that the rasteriser named; all 0 with
+// Multisampling::Clamp.
+struct MultisamplingCounts
+{
+  std::uint64_t failed = 0;       // the pixel's own triangle is not met
+  std::uint64_t repaired = 0;     // another pixel's triangle is shown instead
+  std::uint64_t interpolated = 0; // coloured from the pixels around it
+  std::uint64_t unresolved = 0;   // left without colour
+
+  MultisamplingCounts& operator+=(const MultisamplingCounts& o)
+  {
+    this->failed += o.failed;
+    this->repaired += o.repaired;
+    this->interpolated += o.interpolated;
+    this->unresolved += o.unresolved;
+    return *this;
+  }
+};
+
+// How the pixels that show something wanted got their colour.
+struct InterleaveCounts
+{
+  std::uint64_t traced = 0;
+  std::uint64_t interpolated = 0; // from the samples around them
+
+  InterleaveCounts& operator+=(const InterleaveCounts& o)
+  {
+    this->traced += o.traced;
+    this->interpolated += o.interpolated;
+    return *this;
+  }
+};
+
 struct SecondaryResult
 {
   RayCounters rays;
-  std::uint64_t pixels = 0;     // that show a mirror or glass
+  MultisamplingCounts multisampling;
+  InterleaveCounts interleave;
+  std::uint64_t pixels = 0;     // that show a mirror or glass, traced
   std::uint64_t invalidIds = 0;
 
   SecondaryResult& operator+=(const SecondaryResult& o)
   {
     this->rays += o.rays;
+    this->multisampling += o.multisampling;
+    this->interleave += o.interleave;
     this->pixels += o.pixels;
     this->invalidIds += o.invalidIds;
     return *this;

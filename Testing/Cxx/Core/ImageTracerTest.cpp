@@ -50,7 +50,7 @@ struct Balls
     scene.background.top = glm::vec3(0.2f, 0.4f, 0.8f);
     scene.camera = scenes::perspective({ 0, 2, 7 }, { 0, 0, 0 }, width, height);
     structure.update(scene);
-    castPrimaryRays(scene, structure, hits);
+    castPrimaryRays(scene, structure, {}, hits);
   }
 
   SecondaryResult trace(

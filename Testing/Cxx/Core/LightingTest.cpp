@@ -49,10 +49,11 @@ struct Floor
     const Surfaces surfaces(scene);
     const Lighting lighting(scene, surfaces, structure, settings);
     std::vector<glm::vec3> sums(1, glm::vec3(0.0f));
+    std::vector<PathSignature> signatures(1, 0);
     ShadowQueue queue;
     lighting.shade(surfaces.at(hit, ray.direction), -ray.direction,
-      { 0, glm::vec3(1.0f), sums[0] }, queue, rays);
-    lighting.flush(queue, RayOrder::Coherent, sums);
+      { 0, glm::vec3(1.0f), sums[0], signatures[0] }, queue, rays);
+    lighting.flush(queue, RayOrder::Coherent, sums, signatures);
     EXPECT_TRUE(queue.empty());
     return sums[0].r;
   }

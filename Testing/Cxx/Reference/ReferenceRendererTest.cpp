@@ -184,7 +184,7 @@ TEST(ReferenceRenderer, TheTracerShowsTheReference)
       EmbreeStructure structure;
       structure.update(s);
       PrimaryHits hits;
-      castPrimaryRays(s, structure, hits);
+      castPrimaryRays(s, structure, {}, hits);
       SecondaryImage image;
       traceImage(s, structure, settings, hits.ids.data(), image);
       std::size_t fragile = 0, covered = 0;

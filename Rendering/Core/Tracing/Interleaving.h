@@ -1,0 +1,81 @@
+// Interleaved rendering (paper, section 3.1): only every n-th column and row of pixels is traced, the rest
+// is interpolated between these samples in a second pass. The paper's plain interpolation blurs whatever
+// lies between two samples; with error control a pixel is interpolated only where nothing speaks against
+// it, and traced otherwise.
+#pragma once
+
+#include "Rendering/Core/Tracing/TileTracer.h"
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <vector>
+
+namespace hrt
+{
+
+// The pixels whose column and row are multiples of n, and those of the last column and row, so that
+// every other pixel lies between samples.
+class Lattice
+{
+public:
+  Lattice(const Camera& camera, int n);
+
+  int columns() const { return this->Columns; }
+  int rows() const { return this->Rows; }
+  int pixelColumn(int column) const { return std::min(column * this->N, this->Width - 1); }
+  bool isSample(int pixelColumn, int pixelRow) const
+  {
+    return (pixelColumn % this->N == 0 || pixelColumn == this->Width - 1) &&
+      (pixelRow % this->N == 0 || pixelRow == this->Height - 1);
+  }
+  int pixelRow(int row) const { return std::min(row * this->N, this->Height - 1); }
+  std::uint32_t pixel(int column, int row) const
+  {
+    return static_cast<std::uint32_t>(this->pixelRow(row)) * this->Width +
+      this->pixelColumn(column);
+  }
+
+  // The samples around a pixel, one to four of them, with bilinear weights that sum to 1. One: the
+  // pixel is that sample.
+  struct Around
+  {
+    struct Neighbour
+    {
+      std::uint32_t sample; // row * columns() + column
+      std::uint32_t pixel;
+      float weight;
+    };
+    std::array<Neighbour, 4> neighbours;
+    int count = 0;
+    int nearest = 0; // the first of those with the largest weight
+  };
+  Around around(int pixelColumn, int pixelRow) const;
+
+private:
+  int N, Width, Height, Columns, Rows;
+};
+
+// The second pass over one pixel between samples. `notes`: of the samples, row by row.
+class Interpolation
+{
+public:
+  Interpolation(const TracedFrame& frame, const Lattice& lattice, Wanted wanted);
+
+  enum class Answer
+  {
+    Leave,        // nothing wanted is there
+    Interpolated, // `color` is the pixel's
+    Trace
+  };
+  Answer at(int column, int row, const std::uint32_t* ids,
+    const std::vector<TileTracer::Note>& notes, const std::vector<glm::vec4>& colors,
+    glm::vec4& color) const;
+
+private:
+  const TracedFrame& Frame;
+  const Lattice& Samples;
+  Wanted Light;
+};
+
+} // namespace hrt
