@@ -1,57 +1,58 @@
 // Implements the lattice of samples and what is allowed between them.
 #include "Rendering/Core/Tracing/Interleaving.h"
 
-#include <algorithm>
-
 namespace hrt
 {
 
 namespace
 {
 
-// By how much samples may differ for error control to interpolate between them, in each component. What
-// is interpolated lies within the range of the samples. Where they saw the same surfaces and lights and
-// nothing unseen stands between, so does, for colours without an extremum inside of the cell, the true
-// colour: the error is below the range of the samples, here 8 steps of an 8-bit picture, and in the
-// middle of a linear ramp it is 0.
-constexpr float kLargestSpread = 8.0f / 255.0f;
+// The largest error of an interpolated pixel that error control puts up with where all goes well.
+constexpr float kLargestError = 3.0f / 255.0f;
 
-// A sample's place along one axis and its weight there.
-struct Along
-{
-  int first;
-  int count;
-  float second; // weight of the second one
-};
-
-Along along(int at, int n, int last)
-{
-  const int first = at / n;
-  const int from = first * n;
-  if (at == from)
-  {
-    return { first, 1, 0.0f };
-  }
-  const int to = std::min(from + n, last);
-  return at == to ? Along{ first + 1, 1, 0.0f }
-                  : Along{ first, 2, static_cast<float>(at - from) / static_cast<float>(to - from) };
-}
+// By how much samples may differ, in each component, for error control to interpolate between them. What is
+// interpolated lies within their range R. Along an axis a colour that rises or falls from one sample to
+// the next without a turn in its curvature, R x^2 at worst, is off its chord by R (x - x^2): by R / 4 in
+// the middle. Where it is linear the error is 0, and what happens between the samples unseen by all four
+// of them, no bound on their range can tell.
+constexpr float kLargestSpread = 4.0f * kLargestError;
 
 } // namespace
 
+Lattice::Axis::Axis(int pixels, int n)
+  : places(static_cast<std::size_t>(pixels))
+{
+  for (int pixel = 0; pixel < pixels; ++pixel)
+  {
+    if (pixel % n == 0 || pixel == pixels - 1)
+    {
+      this->samples.push_back(pixel);
+    }
+    this->places[pixel].first = static_cast<int>(this->samples.size()) - 1;
+  }
+  for (int pixel = 0; pixel < pixels; ++pixel)
+  {
+    Place& place = this->places[pixel];
+    const int from = this->samples[place.first];
+    if (pixel != from)
+    {
+      place.count = 2;
+      place.second = static_cast<float>(pixel - from) /
+        static_cast<float>(this->samples[place.first + 1] - from);
+    }
+  }
+}
+
 Lattice::Lattice(const Camera& camera, int n)
-  : N(n)
-  , Width(camera.width)
-  , Height(camera.height)
-  , Columns(camera.width > 0 ? (camera.width - 1 + n - 1) / n + 1 : 0)
-  , Rows(camera.height > 0 ? (camera.height - 1 + n - 1) / n + 1 : 0)
+  : Width(static_cast<std::uint32_t>(camera.width))
+  , X(camera.width, n)
+  , Y(camera.height, n)
 {
 }
 
 Lattice::Around Lattice::around(int pixelColumn, int pixelRow) const
 {
-  const Along x = along(pixelColumn, this->N, this->Width - 1);
-  const Along y = along(pixelRow, this->N, this->Height - 1);
+  const Place &x = this->X.places[pixelColumn], &y = this->Y.places[pixelRow];
   Around result;
   for (int j = 0; j < y.count; ++j)
   {
@@ -60,7 +61,7 @@ Lattice::Around Lattice::around(int pixelColumn, int pixelRow) const
       const int column = x.first + i, row = y.first + j;
       const float weight =
         (i == 0 ? 1.0f - x.second : x.second) * (j == 0 ? 1.0f - y.second : y.second);
-      result.neighbours[result.count] = { static_cast<std::uint32_t>(row * this->Columns + column),
+      result.neighbours[result.count] = { static_cast<std::uint32_t>(row * this->columns() + column),
         this->pixel(column, row), weight };
       result.nearest =
         weight > result.neighbours[result.nearest].weight ? result.count : result.nearest;

@@ -21,19 +21,17 @@ class Lattice
 public:
   Lattice(const Camera& camera, int n);
 
-  int columns() const { return this->Columns; }
-  int rows() const { return this->Rows; }
-  int pixelColumn(int column) const { return std::min(column * this->N, this->Width - 1); }
-  bool isSample(int pixelColumn, int pixelRow) const
-  {
-    return (pixelColumn % this->N == 0 || pixelColumn == this->Width - 1) &&
-      (pixelRow % this->N == 0 || pixelRow == this->Height - 1);
-  }
-  int pixelRow(int row) const { return std::min(row * this->N, this->Height - 1); }
+  int columns() const { return static_cast<int>(this->X.samples.size()); }
+  int rows() const { return static_cast<int>(this->Y.samples.size()); }
+  int pixelRow(int row) const { return this->Y.samples[row]; }
   std::uint32_t pixel(int column, int row) const
   {
-    return static_cast<std::uint32_t>(this->pixelRow(row)) * this->Width +
-      this->pixelColumn(column);
+    return static_cast<std::uint32_t>(this->Y.samples[row]) * this->Width +
+      static_cast<std::uint32_t>(this->X.samples[column]);
+  }
+  bool isSample(int pixelColumn, int pixelRow) const
+  {
+    return this->X.places[pixelColumn].count == 1 && this->Y.places[pixelRow].count == 1;
   }
 
   // The samples around a pixel, one to four of them, with bilinear weights that sum to 1. One: the
@@ -53,7 +51,22 @@ public:
   Around around(int pixelColumn, int pixelRow) const;
 
 private:
-  int N, Width, Height, Columns, Rows;
+  // One axis, by tables: every pixel asks, and divisions take longer than the rest.
+  struct Place
+  {
+    int first = 0;       // sample at or before the pixel
+    int count = 1;       // 1: the pixel is that sample, 2: the next one is on its other side
+    float second = 0.0f; // weight of the next one
+  };
+  struct Axis
+  {
+    Axis(int pixels, int n);
+    std::vector<int> samples;  // their pixels
+    std::vector<Place> places; // of the pixels
+  };
+
+  std::uint32_t Width;
+  Axis X, Y;
 };
 
 // The second pass over one pixel between samples. `notes`: of the samples, row by row.

@@ -59,15 +59,21 @@ public:
     }
   }
 
-  // A pixel between samples from what they show; false when its own ray has to decide.
+  // A pixel between samples from what they show; false when its own ray has to decide. A triangle is
+  // convex: what lies between points of it belongs to it.
   bool infer(int column, int row, const Lattice& lattice, bool errorControl, RayCount& count)
   {
     const Lattice::Around around = lattice.around(column, row);
     const std::uint32_t nearest = around.neighbours[around.nearest].pixel;
     const std::uint32_t id = this->Hits.ids[nearest];
-    const bool agreed = std::all_of(around.neighbours.begin(),
-      around.neighbours.begin() + around.count,
-      [this, id](const Lattice::Around::Neighbour& n) { return this->Hits.ids[n.pixel] == id; });
+    bool agreed = true;
+    double depth = 0.0;
+    for (int i = 0; i < around.count; ++i)
+    {
+      const Lattice::Around::Neighbour& neighbour = around.neighbours[i];
+      agreed = agreed && this->Hits.ids[neighbour.pixel] == id;
+      depth += static_cast<double>(neighbour.weight) * this->Hits.clipDepths[neighbour.pixel];
+    }
     if (errorControl && !agreed)
     {
       return false;
@@ -76,16 +82,9 @@ public:
     ++count.answered;
     const std::size_t pixel = std::size_t(row) * this->Frame.snapshot.camera.width + column;
     this->Hits.ids[pixel] = id;
-    this->Hits.clipDepths[pixel] = this->Hits.clipDepths[nearest];
-    const Ray ray = this->Frame.primaryRay(static_cast<std::uint32_t>(pixel));
-    Hit hit;
-    // A triangle is convex: what lies between points of it belongs to it. Beyond its edge, where plain
-    // interleaving puts it, its plane may be anywhere: there the sample's depth stays.
-    if (id != 0 && agreed && this->Frame.surfaces.primaryHit(id - 1, ray, hit))
-    {
-      this->Hits.clipDepths[pixel] =
-        this->Planes.depth(this->Frame.surfaces.at(hit, ray.direction).position);
-    }
+    // In a plane's image z / w is linear: the samples' mean is the plane's depth here. Beyond the
+    // triangle, where plain interleaving puts it, the plane may be anywhere: there the sample's stays.
+    this->Hits.clipDepths[pixel] = agreed ? depth : this->Hits.clipDepths[nearest];
     return true;
   }
 
@@ -106,26 +105,29 @@ private:
     }
   }
 
-  bool shown(const SurfacePoint& point) const
+  bool shown(const Ray& ray, const Hit& hit) const
   {
-    const Part& part = this->Frame.snapshot.parts[point.part];
-    const bool culled = point.frontSide ? part.material.cullFront : part.material.cullBack;
-    return part.visibleToCamera && !culled;
+    const Part& part = this->Frame.snapshot.parts[this->Frame.snapshot.partOf(hit.triangle)];
+    const bool front = part.material.cullFront, back = part.material.cullBack;
+    if (!part.visibleToCamera || front == back)
+    {
+      return part.visibleToCamera && !front;
+    }
+    return this->Frame.surfaces.at(hit, ray.direction).frontSide ? !front : !back;
   }
 
   void store(std::uint32_t pixel, Ray ray, Hit hit, RayCount& count)
   {
     for (int passed = 0; hit.valid() && passed < kMostHidden; ++passed)
     {
-      const SurfacePoint point = this->Frame.surfaces.at(hit, ray.direction);
-      if (this->shown(point))
+      if (this->shown(ray, hit))
       {
         this->Hits.ids[pixel] = hit.triangle + 1;
-        this->Hits.clipDepths[pixel] = this->Planes.depth(point.position);
+        this->Hits.clipDepths[pixel] = this->Planes.depth(ray.origin + hit.t * ray.direction);
         return;
       }
       const double left = ray.tMaximum - hit.t;
-      ray = leave(point, ray.direction);
+      ray = leave(this->Frame.surfaces.at(hit, ray.direction), ray.direction);
       ray.tMaximum = left;
       ++count.asked;
       ++count.traced;
