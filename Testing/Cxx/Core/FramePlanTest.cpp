@@ -152,6 +152,17 @@ TEST(FramePlan, RunsWhatAChangeNeeds)
         f.changes.materials = true;
         f.caches.hostIds = false;
       } },
+    { "another interleaving", "YB", [](Frame& f) { f.settingsChanges.sampling = true; } },
+    { "another interleaving without mirror", "B",
+      [](Frame& f) {
+        f.settingsChanges.sampling = true;
+        f.facts.mirrorInView = false;
+      } },
+    { "another interleaving, shaded on the CPU", "PB",
+      [](Frame& f) {
+        f.settingsChanges.sampling = true;
+        f.settings.primaryShading = PrimaryShading::CPU;
+      } },
     { "another accelerator", "B", [](Frame& f) { f.settingsChanges.structure = true; } },
     { "another accelerator, moved", "VPRTYB",
       [](Frame& f) {
@@ -466,12 +477,15 @@ TEST(FramePlan, ShadowMapsGoStaleWhileShadowsAreOff)
 
 TEST(SettingsChanges, NameWhatTheyOutdate)
 {
-  const auto compare = [](const std::function<void(Settings&)>& change) {
-    Settings now;
+  const auto compareFrom = [](const Settings& before, const std::function<void(Settings&)>& change) {
+    Settings now = before;
     change(now);
-    const SettingsChanges c = compareSettings(Settings(), now);
+    const SettingsChanges c = compareSettings(before, now);
     return std::string(c.visibility ? "V" : "") + (c.shading ? "S" : "") +
-      (c.secondary ? "R" : "") + (c.structure ? "T" : "");
+      (c.secondary ? "R" : "") + (c.structure ? "T" : "") + (c.sampling ? "I" : "");
+  };
+  const auto compare = [&](const std::function<void(Settings&)>& change) {
+    return compareFrom(Settings(), change);
   };
   EXPECT_EQ(compare([](Settings&) {}), "");
   EXPECT_EQ(compare([](Settings& s) { s.visibility = Visibility::DirectRendering; }), "V");
@@ -482,6 +496,24 @@ TEST(SettingsChanges, NameWhatTheyOutdate)
   EXPECT_EQ(compare([](Settings& s) { s.reflections = false; }), "R");
   EXPECT_EQ(compare([](Settings& s) { s.refractions = false; }), "R");
   EXPECT_EQ(compare([](Settings& s) { s.maximumDepth = 7; }), "R");
+
+  const auto lazy = [](Settings& s) { s.multisampling = Multisampling::Lazy3x3; };
+  const auto thinner = [](Settings& s) { s.interleave = 2; };
+  const auto uncontrolled = [](Settings& s) { s.interleaveErrorControl = false; };
+  EXPECT_EQ(compare(lazy), "I");
+  EXPECT_EQ(compare(thinner), "I");
+  EXPECT_EQ(compare(uncontrolled), ""); // of every pixel there is nothing to control
+  Settings every;
+  every.interleave = 3;
+  EXPECT_EQ(compareFrom(every, uncontrolled), "I");
+  // Primary rays are thinned too, and need no repair; nor does direct rendering.
+  Settings rays;
+  rays.visibility = Visibility::RayCasting;
+  EXPECT_EQ(compareFrom(rays, thinner), "VI");
+  EXPECT_EQ(compareFrom(rays, lazy), "");
+  Settings direct;
+  direct.visibility = Visibility::DirectRendering;
+  EXPECT_EQ(compareFrom(direct, lazy), "");
 }
 
 TEST(GatherFacts, SeesWhatIsInTheFrustum)

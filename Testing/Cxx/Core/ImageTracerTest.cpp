@@ -71,28 +71,63 @@ struct Balls
   }
 };
 
+void expectSameCounts(const SecondaryResult& a, const SecondaryResult& b)
+{
+  EXPECT_EQ(a.pixels, b.pixels);
+  EXPECT_EQ(a.multisampling.failed, b.multisampling.failed);
+  EXPECT_EQ(a.multisampling.repaired, b.multisampling.repaired);
+  EXPECT_EQ(a.multisampling.interpolated, b.multisampling.interpolated);
+  EXPECT_EQ(a.multisampling.unresolved, b.multisampling.unresolved);
+  EXPECT_EQ(a.interleave.traced, b.interleave.traced);
+  EXPECT_EQ(a.interleave.interpolated, b.interleave.interpolated);
+  expectSameCounts(a.rays.reflection, b.rays.reflection);
+  expectSameCounts(a.rays.refraction, b.rays.refraction);
+  expectSameCounts(a.rays.shadow, b.rays.shadow);
+}
+
+// Every seventh pixel names the triangle of a pixel two columns and two rows away.
+void plantErrors(Balls& balls)
+{
+  const int width = balls.scene.camera.width, height = balls.scene.camera.height;
+  const std::vector<std::uint32_t> right = balls.hits.ids;
+  for (int row = 0; row + 2 < height; ++row)
+  {
+    for (int column = row % 7; column + 2 < width; column += 7)
+    {
+      balls.hits.ids[row * width + column] = right[(row + 2) * width + column + 2];
+    }
+  }
+}
+
 TEST(ImageTracer, IsTheSameForAnyBandsAndThreads)
 {
-  const Balls balls(150, 101);
+  Balls balls(150, 101);
+  plantErrors(balls);
+  TracerSettings lazy, full, interleaved, all;
+  lazy.multisampling = Multisampling::Lazy3x3;
+  full.multisampling = Multisampling::Full5x5;
+  interleaved.interleave = 3;
+  all.multisampling = Multisampling::Lazy5x5;
+  all.interleave = 2;
   for (const Wanted wanted : { Wanted::Everything, Wanted::SecondaryOnly })
   {
-    const TracerSettings settings;
-    SecondaryImage reference;
-    const SecondaryResult expected = balls.trace(settings, wanted, reference, 101);
-    EXPECT_GT(expected.rays.reflection.traced, 100u);
-    EXPECT_GT(expected.rays.refraction.traced, 100u);
-    for (const int band : { 1, 7, 32, 64 })
+    for (const TracerSettings& settings : { TracerSettings(), lazy, full, interleaved, all })
     {
-      for (const int threads : { 1, 2, 5 })
+      SecondaryImage reference;
+      const SecondaryResult expected = balls.trace(settings, wanted, reference, 101);
+      EXPECT_GT(expected.rays.reflection.traced, 100u);
+      EXPECT_GT(expected.rays.refraction.traced, 100u);
+      EXPECT_EQ(expected.multisampling.repaired > 100, reachOf(settings.multisampling) > 0);
+      EXPECT_EQ(expected.interleave.interpolated > 100, settings.interleave > 1);
+      for (const int band : { 1, 7, 32, 64 })
       {
-        const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
-        SecondaryImage image;
-        const SecondaryResult result = balls.trace(settings, wanted, image, band);
-        expectSamePicture(image, reference);
-        EXPECT_EQ(result.pixels, expected.pixels);
-        expectSameCounts(result.rays.reflection, expected.rays.reflection);
-        expectSameCounts(result.rays.refraction, expected.rays.refraction);
-        expectSameCounts(result.rays.shadow, expected.rays.shadow);
+        for (const int threads : { 1, 2, 5 })
+        {
+          const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
+          SecondaryImage image;
+          expectSameCounts(balls.trace(settings, wanted, image, band), expected);
+          expectSamePicture(image, reference);
+        }
       }
     }
   }
