@@ -3,8 +3,9 @@ ON, with the value written on it.
 
     ./run python Documentation/make_pictures.py [name ...]
 
-Each half is rendered at twice its size and averaged, because the pass takes one sample a pixel. The
-README's pair needs the Stanford bunny (see Data/README.md) and is left as it is without it.
+Each half is rendered at twice its size and averaged, because the pass takes one sample a pixel - but for
+those that show what becomes of single pixels. Pictures of the Stanford bunny need scene data (see
+Data/README.md) and are left as they are without it.
 """
 
 import importlib.util
@@ -426,28 +427,81 @@ def examples():
             save("example_" + script.stem, (averaged(array_of(reader.GetOutput()), 2), None))
 
 
-def before_after():
-    """The demo's scene by VTK's renderer and by the pass."""
+def demo_scene(picture_name, mirror=False, glass=False):
+    """The demo's scene with the Stanford bunny; None without scene data."""
     root = os.environ.get("HRT_DATA_ROOT")
     path = pathlib.Path(root, "bunny/bunny.ply") if root else None
     if not path or not path.is_file():
-        print("before_after.png: left as it is, no scene data (see Data/README.md)")
-        return
+        print(f"{picture_name}.png: left as it is, no scene data (see Data/README.md)")
+        return None
     sys.path.insert(0, str(EXAMPLES))
     spec = importlib.util.spec_from_file_location("demo", EXAMPLES / "demo.py")
     demo = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(demo)
+    return demo.scene(demo.bunny(str(path)), mirror=mirror, glass=glass)
+
+
+def before_after():
+    """The demo's scene by VTK's renderer and by the pass."""
     halves = []
     for label, setting in (("VTK's renderer", False), ("the same script with the pass", True)):
-        renderer = demo.scene(demo.bunny(str(path)), mirror=True, glass=True)
+        renderer = demo_scene("before_after", mirror=True, glass=True)
+        if renderer is None:
+            return
         if setting:
             traced(renderer)
         halves.append((picture(renderer, (448, 336)), label))
     save("before_after", *halves)
 
 
+def multisampling():
+    """The paper's figure 3: a part of the bunny, each of its pixels four of the picture's. Of all parts the
+    one with most pixels that change."""
+    zoom, halves = 4, []
+    for mode in (0, 2):
+        renderer = demo_scene("multisampling")
+        if renderer is None:
+            return
+        renderer.GetActiveCamera().Zoom(0.75)
+        traced(renderer, PrimaryShading=1, Multisampling=mode)
+        halves.append(picture(renderer, scale=1))
+    height, width = HALF[1] // zoom, HALF[0] // zoom
+    changed = (halves[0] != halves[1]).any(axis=2)
+    print(f"multisampling: {changed.sum()} pixels change")
+    sums = np.pad(changed.astype(int).cumsum(axis=0).cumsum(axis=1), ((1, 0), (1, 0)))
+    inside = (sums[height:, width:] - sums[:-height, width:]
+              - sums[height:, :-width] + sums[:-height, :-width])
+    y, x = np.unravel_index(inside.argmax(), inside.shape)
+    parts = [h[y:y + height, x:x + width].repeat(zoom, axis=0).repeat(zoom, axis=1) for h in halves]
+    save("multisampling", (parts[0], "Multisampling Off"), (parts[1], "Multisampling Lazy3x3"))
+
+
+def interleave():
+    """The paper's figure 4: normal and interleaved rendering; one pixel of it one of the picture's."""
+    halves = []
+    for label, settings in (("Interleave 1", {}),
+                            ("Interleave 4, InterleaveErrorControl Off",
+                             {"Interleave": 4, "InterleaveErrorControl": False})):
+        renderer = demo_scene("interleave", mirror=True)
+        if renderer is None:
+            return
+        traced(renderer, PrimaryShading=1, **settings)
+        halves.append((picture(renderer, scale=1), label))
+    save("interleave", *halves)
+
+
+def interleave_error_control():
+    halves = []
+    for label, control in (("InterleaveErrorControl Off", False), ("InterleaveErrorControl On", True)):
+        renderer = mirror_scene()
+        traced(renderer, PrimaryShading=1, Interleave=4, InterleaveErrorControl=control)
+        halves.append((picture(renderer, scale=1), label))
+    save("interleave_error_control", *halves)
+
+
 PICTURES = [before_after, shadow_mode, shadow_map_resolution, visibility, reflections, refractions,
-            maximum_depth, reflectance, glass, buffers, object_intersection_buffer, examples]
+            maximum_depth, multisampling, interleave, interleave_error_control, reflectance, glass,
+            buffers, object_intersection_buffer, examples]
 
 
 def main():

@@ -12,9 +12,9 @@ constexpr float kLargestError = 3.0f / 255.0f;
 
 // By how much samples may differ, in each component, for error control to interpolate between them. What is
 // interpolated lies within their range R. Along an axis a colour that rises or falls from one sample to
-// the next without a turn in its curvature, R x^2 at worst, is off its chord by R (x - x^2): by R / 4 in
-// the middle. Where it is linear the error is 0, and what happens between the samples unseen by all four
-// of them, no bound on their range can tell.
+// the next with even curvature, R x^2 at worst, is off its chord by R (x - x^2): by R / 4 in the middle.
+// Where it is linear the error is 0. What happens between the samples unseen by all four of them, no bound
+// on their range can tell.
 constexpr float kLargestSpread = 4.0f * kLargestError;
 
 } // namespace

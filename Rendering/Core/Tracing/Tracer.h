@@ -39,8 +39,9 @@ struct TracerSettings
 struct RayCount
 {
   std::uint64_t asked = 0;
-  // Without tracing: shadow rays of a surface turned from the light or a term that is zero; other
-  // rays beyond the maximum depth or with a weight below 1/512 of the pixel.
+  // Without tracing: shadow rays of a surface turned from the light or a term that is zero; primary
+  // rays beside the near and far plane or of pixels between samples that show the same; other rays
+  // beyond the maximum depth or with a weight below 1/512 of the pixel.
   std::uint64_t answered = 0;
   std::uint64_t traced = 0;
 
