@@ -1,6 +1,7 @@
 """What a frame costs: the hybrid pass beside VTK's own renderer, frame by frame in turn in one window, so
-that a noisy machine disturbs both alike. Prints medians with quartiles and the ratio; writes JSON. Then the
-core by itself, where hrtCoreBenchmark was built: the kd-tree's build and rays beside Embree's.
+that a noisy machine disturbs both alike. Prints medians with quartiles and the ratio; writes JSON. Then
+interleaved rendering, time against error (interleaving.py), and the core by itself, where
+hrtCoreBenchmark was built: the kd-tree's build and rays beside Embree's.
 
     ./run bench [--quick] [--frames N] [--json FILE] [--no-core]
     ./run bench --paper [...]     the paper's tables and figure, see paper.py
@@ -18,6 +19,7 @@ import subprocess
 import sys
 import time
 
+import interleaving
 from measure import SIZE, WARM_UP, device_of, header, model_on_floor, models, timed, window_of
 from vtkhybrid import __version__, statistics, vtkHybridRayTracingPass
 from vtkmodules.vtkCommonCore import vtkVersion
@@ -113,9 +115,11 @@ def main():
                   f" {middle:8.1f} [{low:5.1f}, {high:5.1f}] {r1:6.2f} [{r0:4.2f}, {r2:4.2f}]",
                   flush=True)
     print("OpenGL:", results[0]["device"])
+    interleaved = interleaving.run(frames)
     if arguments.json:
+        figures = {**header(frames), "results": results, "interleaving": interleaved}
         pathlib.Path(arguments.json).write_text(
-            json.dumps({**header(frames), "results": results}, indent=1) + "\n", encoding="utf-8")
+            json.dumps(figures, indent=1) + "\n", encoding="utf-8")
     if not arguments.no_core:
         run_core()
     return 0
