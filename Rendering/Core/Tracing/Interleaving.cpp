@@ -50,27 +50,6 @@ Lattice::Lattice(const Camera& camera, int n)
 {
 }
 
-Lattice::Around Lattice::around(int pixelColumn, int pixelRow) const
-{
-  const Place &x = this->X.places[pixelColumn], &y = this->Y.places[pixelRow];
-  Around result;
-  for (int j = 0; j < y.count; ++j)
-  {
-    for (int i = 0; i < x.count; ++i)
-    {
-      const int column = x.first + i, row = y.first + j;
-      const float weight =
-        (i == 0 ? 1.0f - x.second : x.second) * (j == 0 ? 1.0f - y.second : y.second);
-      result.neighbours[result.count] = { static_cast<std::uint32_t>(row * this->columns() + column),
-        this->pixel(column, row), weight };
-      result.nearest =
-        weight > result.neighbours[result.nearest].weight ? result.count : result.nearest;
-      ++result.count;
-    }
-  }
-  return result;
-}
-
 Interpolation::Interpolation(const TracedFrame& frame, const Lattice& lattice, Wanted wanted)
   : Frame(frame)
   , Samples(lattice)

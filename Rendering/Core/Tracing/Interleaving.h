@@ -45,10 +45,29 @@ public:
       float weight;
     };
     std::array<Neighbour, 4> neighbours;
-    int count = 0;
-    int nearest = 0; // the first of those with the largest weight
+    int count;
+    int nearest; // the first of those with the largest weight
   };
-  Around around(int pixelColumn, int pixelRow) const;
+  Around around(int pixelColumn, int pixelRow) const
+  {
+    const Place &x = this->X.places[pixelColumn], &y = this->Y.places[pixelRow];
+    Around result;
+    result.count = 0;
+    for (int j = 0; j < y.count; ++j)
+    {
+      const float wy = j == 0 ? 1.0f - y.second : y.second;
+      for (int i = 0; i < x.count; ++i)
+      {
+        const int column = x.first + i, row = y.first + j;
+        result.neighbours[result.count++] = {
+          static_cast<std::uint32_t>(row * this->columns() + column), this->pixel(column, row),
+          wy * (i == 0 ? 1.0f - x.second : x.second)
+        };
+      }
+    }
+    result.nearest = (y.second > 0.5f ? x.count : 0) + (x.second > 0.5f ? 1 : 0);
+    return result;
+  }
 
 private:
   // One axis, by tables: every pixel asks, and divisions take longer than the rest.
