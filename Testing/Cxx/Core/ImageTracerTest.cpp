@@ -9,8 +9,10 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cstring>
 #include <stdexcept>
+#include <thread>
 
 namespace
 {
@@ -66,6 +68,11 @@ struct Balls
       std::copy(hits.ids.begin() + row * width, hits.ids.begin() + end * width,
         arriving.begin() + row * width);
       tracer.idsReady(end);
+      if (band >= 32)
+      {
+        // Lets the background tasks come to what has not arrived, if they look at it.
+        std::this_thread::sleep_for(std::chrono::milliseconds(10));
+      }
     }
     return tracer.finish();
   }

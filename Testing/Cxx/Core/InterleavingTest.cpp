@@ -315,6 +315,25 @@ TEST(Interleaving, ErrorControlSeesAShadowsEdge)
   EXPECT_GT(rootMeanSquare(trace(s, interleaved(2, false)).image, every.image), 0.01);
 }
 
+TEST(Interleaving, ErrorControlSeesThatEqualColoursAreTwoThings)
+{
+  // A mirror shows two red boards behind the camera and, between samples, the gap between them.
+  Snapshot s;
+  scenes::addPart(s, rectangle(-30, -30, 30, 30)).material = scenes::mirror(1.0f);
+  const auto red = scenes::glowing({ 1, 0, 0 });
+  scenes::addPart(s, rectangle(-30, -30, 1.1f, 30, 12)).material = red;
+  scenes::addPart(s, rectangle(1.9f, -30, 30, 30, 12)).material = red;
+  s.background.bottom = s.background.top = glm::vec3(0, 0, 1);
+  s.camera = parallelCamera(40, 30);
+  const Picture every = trace(s, {}), some = trace(s, interleaved(2, true));
+  ASSERT_EQ(every.at(20, 7), glm::vec4(1, 0, 0, 1));
+  ASSERT_EQ(every.at(21, 7), glm::vec4(0, 0, 1, 1));
+  ASSERT_EQ(every.at(22, 7), glm::vec4(1, 0, 0, 1));
+  EXPECT_EQ(some.image.pixels, every.image.pixels);
+  EXPECT_GT(some.result.interleave.interpolated, 800u);
+  EXPECT_NE(trace(s, interleaved(2, false)).image.pixels, every.image.pixels);
+}
+
 TEST(Interleaving, PrimaryRaysAreThinned)
 {
   const Snapshot s = balls(201, 150);
