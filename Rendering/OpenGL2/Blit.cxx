@@ -22,7 +22,8 @@ Blit::Blit(ObjectPool& pool)
 }
 
 //------------------------------------------------------------------------------
-bool Blit::draw(vtkOpenGLRenderWindow* window, const Picture& picture, int x, int y)
+bool Blit::draw(vtkOpenGLRenderWindow* window, const Picture& picture, const PixelBounds& bounds,
+  int x, int y)
 {
   vtkShaderProgram* program = readyProgram(window, ScreenTriangle_vs, Blit_fs);
   if (!program)
@@ -36,7 +37,14 @@ bool Blit::draw(vtkOpenGLRenderWindow* window, const Picture& picture, int x, in
   vtkOpenGLState::ScopedglEnableDisable depthTest(state, GL_DEPTH_TEST);
   vtkOpenGLState::ScopedglDepthMask depthMask(state);
   vtkOpenGLState::ScopedglDepthFunc depthFunction(state);
+  vtkOpenGLState::ScopedglEnableDisable scissorTest(state, GL_SCISSOR_TEST);
+  vtkOpenGLState::ScopedglScissor scissor(state);
   state->vtkglViewport(x, y, picture.primary.width(), picture.primary.height());
+  if (bounds != PixelBounds().within(picture.primary.width(), picture.primary.height()))
+  {
+    state->vtkglEnable(GL_SCISSOR_TEST);
+    state->vtkglScissor(x + bounds.x0, y + bounds.y0, bounds.width(), bounds.height());
+  }
   state->vtkglDisable(GL_BLEND);
   state->vtkglDisable(GL_CULL_FACE);
   // What an earlier layer left in a preserved depth buffer still hides us.

@@ -17,8 +17,10 @@ class Blit
 public:
   explicit Blit(ObjectPool& pool);
 
-  // Draws to the framebuffer that is bound, at the given corner.
-  bool draw(vtkOpenGLRenderWindow* window, const Picture& picture, int x, int y);
+  // Draws to the framebuffer that is bound, with the picture's corner at (x, y), the pixels within
+  // the bounds.
+  bool draw(vtkOpenGLRenderWindow* window, const Picture& picture, const PixelBounds& bounds, int x,
+    int y);
 
 private:
   GLuint VertexArray;

@@ -110,7 +110,7 @@ std::string FrameRenderer::render(const std::shared_ptr<const Snapshot>& snapsho
   this->Statistics = FrameStatistics();
   this->Scene = snapshot;
   const SettingsChanges settingsChanges = compareSettings(this->LastSettings, settings);
-  Facts facts = gatherFacts(*snapshot);
+  Facts facts = gatherFacts(*snapshot, settings.tracedBounds);
   facts.circumstances = circumstances;
   const Caches caches = this->currentCaches(*snapshot, facts, settings);
   FramePlan& plan = this->Statistics.plan;
@@ -135,7 +135,8 @@ std::string FrameRenderer::render(const std::shared_ptr<const Snapshot>& snapsho
       continue;
     }
     const auto start = std::chrono::steady_clock::now();
-    error = stage == Stage::Blit ? this->show(shown, x, y) : this->runStage(stage, settings);
+    error = stage == Stage::Blit ? this->show(shown, settings.bounds, x, y)
+                                 : this->runStage(stage, settings);
     this->Statistics.milliseconds[static_cast<std::size_t>(stage)] =
       std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
   }
@@ -161,8 +162,9 @@ std::string FrameRenderer::runStage(Stage stage, const Settings& settings)
     case Stage::ShadowMaps:
       return this->drawShadowMaps(snapshot);
     case Stage::Visibility:
-      return settings.visibility == Visibility::RayCasting ? this->castPrimary(snapshot, settings)
-                                                           : this->drawVisibility(snapshot);
+      return settings.visibility == Visibility::RayCasting
+        ? this->castPrimary(snapshot, settings)
+        : this->drawVisibility(snapshot, settings);
     case Stage::Structure:
       return this->updateStructure(snapshot, settings);
     case Stage::ShadowReadBack:
@@ -172,7 +174,7 @@ std::string FrameRenderer::runStage(Stage stage, const Settings& settings)
     case Stage::ReadBack:
       return this->readBackAndTrace(settings);
     case Stage::PrimaryShading:
-      return !settings.shadesOnCPU() ? this->shadePrimary(snapshot)
+      return !settings.shadesOnCPU() ? this->shadePrimary(snapshot, settings)
         : pipelined                  ? std::string() // goes on when the frame is over
                                      : this->trace(settings);
     case Stage::SecondaryRays:
@@ -185,9 +187,9 @@ std::string FrameRenderer::runStage(Stage stage, const Settings& settings)
 }
 
 //------------------------------------------------------------------------------
-std::string FrameRenderer::show(std::size_t picture, int x, int y)
+std::string FrameRenderer::show(std::size_t picture, const PixelBounds& bounds, int x, int y)
 {
-  return this->ToWindow.draw(this->Pool.window(), this->Pictures[picture], x, y)
+  return this->ToWindow.draw(this->Pool.window(), this->Pictures[picture], bounds, x, y)
     ? std::string()
     : "the blit's shader is not usable";
 }
@@ -218,10 +220,11 @@ std::string FrameRenderer::drawShadowMaps(const Snapshot& snapshot)
 }
 
 //------------------------------------------------------------------------------
-std::string FrameRenderer::drawVisibility(const Snapshot& snapshot)
+std::string FrameRenderer::drawVisibility(const Snapshot& snapshot, const Settings& settings)
 {
   ObjectIntersectionBuffer& hits = this->picture().hits;
-  if (!hits.draw(this->Pool.window(), snapshot, this->Geometry))
+  if (!hits.draw(this->Pool.window(), snapshot, this->Geometry, this->Statistics.plan.rasterised,
+        settings.tracedBounds))
   {
     return "the object intersection buffer could not be drawn";
   }
@@ -230,18 +233,19 @@ std::string FrameRenderer::drawVisibility(const Snapshot& snapshot)
 }
 
 //------------------------------------------------------------------------------
-RayCaster::Inputs FrameRenderer::inputs(const Snapshot& snapshot)
+RayCaster::Inputs FrameRenderer::inputs(const Snapshot& snapshot, const Settings& settings)
 {
-  return { snapshot, this->Geometry, this->Tables, this->Shadows, this->picture().hits };
+  return { snapshot, this->Geometry, this->Tables, this->Shadows, this->picture().hits,
+    settings.tracedBounds };
 }
 
 //------------------------------------------------------------------------------
-std::string FrameRenderer::shadePrimary(const Snapshot& snapshot)
+std::string FrameRenderer::shadePrimary(const Snapshot& snapshot, const Settings& settings)
 {
   this->Shadows.updateTable(snapshot);
   this->Tables.update(snapshot, this->Shadows.slots());
   return this->Caster.draw(
-           this->Pool.window(), this->inputs(snapshot), this->picture().primary)
+           this->Pool.window(), this->inputs(snapshot, settings), this->picture().primary)
     ? std::string()
     : "the ray caster could not be drawn";
 }
@@ -272,11 +276,12 @@ std::string FrameRenderer::updateStructure(const Snapshot& snapshot, const Setti
 }
 
 //------------------------------------------------------------------------------
-bool FrameRenderer::readIds(const std::function<void(int)>& rowsReady)
+bool FrameRenderer::readIds(
+  const PixelBounds& bounds, const std::function<void(int)>& rowsReady)
 {
-  const bool done =
-    this->ReadBack.read(this->Pool.window(), this->picture().hits, this->Host.ids, rowsReady);
-  this->Statistics.bytesReadBack += this->Host.ids.size() * sizeof(this->Host.ids[0]);
+  const bool done = this->ReadBack.read(
+    this->Pool.window(), this->picture().hits, bounds, this->Host.ids, rowsReady);
+  this->Statistics.bytesReadBack += bounds.pixels() * sizeof(this->Host.ids[0]);
   return done;
 }
 
@@ -297,6 +302,7 @@ TracerSettings FrameRenderer::tracerSettings(const Settings& settings) const
   tracing.multisampling = settings.usedMultisampling();
   tracing.interleave = settings.interleave;
   tracing.interleaveErrorControl = settings.interleaveErrorControl;
+  tracing.bounds = settings.tracedBounds;
   return tracing;
 }
 
@@ -312,9 +318,9 @@ std::string FrameRenderer::castPrimary(const Snapshot& snapshot, const Settings&
   {
     return std::string("the primary rays could not be traced: ") + exception.what();
   }
-  this->picture().hits.upload(this->Host);
+  this->picture().hits.upload(this->Host, settings.tracedBounds);
   this->Statistics.bytesUploaded +=
-    this->Host.ids.size() * (sizeof(this->Host.ids[0]) + sizeof(float));
+    settings.tracedBounds.pixels() * (sizeof(this->Host.ids[0]) + sizeof(float));
   return {};
 }
 
@@ -349,7 +355,7 @@ std::string FrameRenderer::readBackAndTrace(const Settings& settings)
   try
   {
     this->beginTracing(settings);
-    return this->readIds([this](int rows) { this->Tracer->idsReady(rows); })
+    return this->readIds(settings.tracedBounds, [this](int rows) { this->Tracer->idsReady(rows); })
       ? std::string()
       : "the object intersection buffer could not be read back";
   }
@@ -397,8 +403,9 @@ std::string FrameRenderer::finishTracing()
   Picture& picture = this->Pictures[this->TracedPicture];
   Image2D& target = this->TracesEverything ? picture.primary : picture.secondary;
   target.allocate(this->Traced.width, this->Traced.height, GL_RGBA32F, GL_RGBA, GL_FLOAT);
-  target.upload(this->Traced.pixels.data());
-  this->Statistics.bytesUploaded += this->Traced.pixels.size() * sizeof(this->Traced.pixels[0]);
+  const PixelBounds& bounds = this->Tracing.bounds;
+  target.upload(this->Traced.pixels.data(), bounds);
+  this->Statistics.bytesUploaded += bounds.pixels() * sizeof(this->Traced.pixels[0]);
   return {};
 }
 
@@ -414,7 +421,7 @@ const std::vector<std::uint32_t>& FrameRenderer::ids()
 {
   if (!this->Valid.hostIds)
   {
-    this->Valid.hostIds = this->readIds([](int) {});
+    this->Valid.hostIds = this->readIds(this->LastSettings.tracedBounds, [](int) {});
   }
   if (!this->Valid.hostIds)
   {
@@ -426,11 +433,13 @@ const std::vector<std::uint32_t>& FrameRenderer::ids()
 //------------------------------------------------------------------------------
 bool FrameRenderer::readBarycentrics(std::vector<glm::dvec2>& barycentrics)
 {
-  if (!HitReadBack::readBarycentrics(this->picture().hits, barycentrics))
+  const PixelBounds& bounds = this->LastSettings.tracedBounds;
+  if (!HitReadBack::readBarycentrics(
+        this->Pool.window(), this->picture().hits, bounds, barycentrics))
   {
     return false;
   }
-  this->Statistics.bytesReadBack += barycentrics.size() * sizeof(glm::uvec4);
+  this->Statistics.bytesReadBack += bounds.pixels() * sizeof(glm::uvec4);
   return true;
 }
 
@@ -441,9 +450,9 @@ bool FrameRenderer::readShadow(int light, std::vector<float>& share)
   {
     return this->castShadows(light, share);
   }
-  const bool done =
-    this->Caster.readShadow(this->Pool.window(), this->inputs(*this->Scene), light, share);
-  this->Statistics.bytesReadBack += share.size() * sizeof(float);
+  const bool done = this->Caster.readShadow(
+    this->Pool.window(), this->inputs(*this->Scene, this->LastSettings), light, share);
+  this->Statistics.bytesReadBack += this->LastSettings.tracedBounds.pixels() * sizeof(float);
   return done;
 }
 

@@ -60,7 +60,8 @@ public:
   // The window's context must be current.
   explicit FrameRenderer(vtkOpenGLRenderWindow* window);
 
-  // Renders a frame into the bound framebuffer at (x, y). Empty when done, else what went wrong.
+  // Renders a frame into the bound framebuffer at (x, y). The settings' bounds have been set for the
+  // camera's viewport. Empty when done, else what went wrong.
   std::string render(const std::shared_ptr<const Snapshot>& snapshot, const Changes& changes,
     const Settings& settings, const Circumstances& circumstances, int x, int y);
 
@@ -70,6 +71,8 @@ public:
   bool onHardware() const { return this->Hardware; }
 
   // For the user's buffers, after render().
+  // The pixels that the last frame shows. What the others hold below is left undefined.
+  const PixelBounds& bounds() const { return this->LastSettings.bounds; }
   // Triangle numbers plus one of the last frame, row 0 at the bottom. Empty when they cannot be had.
   const std::vector<std::uint32_t>& ids();
   bool readBarycentrics(std::vector<glm::dvec2>& barycentrics); // direct rendering only
@@ -81,8 +84,8 @@ private:
   std::string runStage(Stage stage, const Settings& settings);
   std::string uploadGeometry(const Snapshot& snapshot);
   std::string drawShadowMaps(const Snapshot& snapshot);
-  std::string drawVisibility(const Snapshot& snapshot);
-  std::string shadePrimary(const Snapshot& snapshot);
+  std::string drawVisibility(const Snapshot& snapshot, const Settings& settings);
+  std::string shadePrimary(const Snapshot& snapshot, const Settings& settings);
   std::string updateStructure(const Snapshot& snapshot, const Settings& settings);
   std::string castPrimary(const Snapshot& snapshot, const Settings& settings);
   std::string readBackAndTrace(const Settings& settings);
@@ -90,12 +93,12 @@ private:
   std::string trace(const Settings& settings);
   std::string finishTracing();
   std::string finishFrameBefore();
-  std::string show(std::size_t picture, int x, int y);
+  std::string show(std::size_t picture, const PixelBounds& bounds, int x, int y);
   Picture& picture() { return this->Pictures[this->Current]; }
   bool castShadows(int light, std::vector<float>& share);
-  bool readIds(const std::function<void(int)>& rowsReady);
+  bool readIds(const PixelBounds& bounds, const std::function<void(int)>& rowsReady);
   TracerSettings tracerSettings(const Settings& settings) const;
-  RayCaster::Inputs inputs(const Snapshot& snapshot);
+  RayCaster::Inputs inputs(const Snapshot& snapshot, const Settings& settings);
 
   // Destroyed last: all others hold names that it owns.
   ObjectPool Pool;

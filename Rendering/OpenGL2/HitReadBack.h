@@ -6,6 +6,8 @@
 #include "Rendering/OpenGL2/ObjectPool.h"
 #include "Rendering/OpenGL2/PixelReadBack.h"
 
+#include "Rendering/Core/PixelBounds.h"
+
 #include <glm/glm.hpp>
 
 #include <cstdint>
@@ -24,15 +26,17 @@ class HitReadBack
 public:
   explicit HitReadBack(ObjectPool& pool);
 
-  // Fills in width x height triangle numbers plus one (0: no hit), row 0 at the bottom, and calls
-  // rowsReady(n) each time more rows are there: [0, n) then are. False when the driver would not map
-  // a buffer.
+  // Fills in width x height triangle numbers plus one (0: no hit, or outside the bounds), row 0 at the
+  // bottom, and calls rowsReady(n) each time more rows are there: [0, n) then are. Only what lies within
+  // the bounds is transferred. False when the driver would not map a buffer.
   bool read(vtkOpenGLRenderWindow* window, const ObjectIntersectionBuffer& hits,
-    std::vector<std::uint32_t>& ids, const std::function<void(int)>& rowsReady);
+    const PixelBounds& bounds, std::vector<std::uint32_t>& ids,
+    const std::function<void(int)>& rowsReady);
 
-  // The (u, v) that direct rendering stored, at once. False when the buffer is an item buffer.
-  static bool readBarycentrics(
-    const ObjectIntersectionBuffer& hits, std::vector<glm::dvec2>& barycentrics);
+  // The (u, v) that direct rendering stored within the bounds, at once; zero outside. False when the
+  // buffer is an item buffer.
+  static bool readBarycentrics(vtkOpenGLRenderWindow* window, const ObjectIntersectionBuffer& hits,
+    const PixelBounds& bounds, std::vector<glm::dvec2>& barycentrics);
 
 private:
   PixelReadBack Pixels;

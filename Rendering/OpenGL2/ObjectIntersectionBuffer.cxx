@@ -11,6 +11,7 @@
 #include "ObjectIntersectionBuffer_fs.h"
 #include "ObjectIntersectionBuffer_vs.h"
 
+#include <cstddef>
 #include <vector>
 
 namespace hrt
@@ -58,8 +59,8 @@ bool ObjectIntersectionBuffer::resize(int width, int height, Visibility visibili
 }
 
 //------------------------------------------------------------------------------
-bool ObjectIntersectionBuffer::draw(
-  vtkOpenGLRenderWindow* window, const Snapshot& snapshot, const GeometryBuffers& geometry)
+bool ObjectIntersectionBuffer::draw(vtkOpenGLRenderWindow* window, const Snapshot& snapshot,
+  const GeometryBuffers& geometry, const std::vector<bool>& parts, const PixelBounds& bounds)
 {
   this->TrianglesDrawn = 0;
   OffscreenState target(window, this->Framebuffer, this->Hits.width(), this->Hits.height());
@@ -81,6 +82,7 @@ bool ObjectIntersectionBuffer::draw(
   const GLuint noHit[4] = { 0, 0, 0, 0 };
   const GLfloat far = this->Convention.clearDepth();
   target.beginDepthPass(this->Convention);
+  target.setScissor(bounds);
   glClearBufferuiv(GL_COLOR, 0, noHit);
   glClearBufferfv(GL_DEPTH, 0, &far);
 
@@ -88,12 +90,13 @@ bool ObjectIntersectionBuffer::draw(
   geometry.bindForDrawing(static_cast<GLuint>(program->GetHandle()));
   const glm::dmat4 toClip = this->Convention.drawMatrix(snapshot.camera.viewToClip) *
     snapshot.camera.worldToView;
-  for (const Part& part : snapshot.parts)
+  for (std::size_t i = 0; i < parts.size(); ++i)
   {
-    if (!part.visibleToCamera || part.geometry->triangleCount() == 0)
+    if (!parts[i])
     {
       continue;
     }
+    const Part& part = snapshot.parts[i];
     setCulling(window->GetState(), part.material);
     glm::mat4 matrix(toClip * part.positionsToWorld());
     program->SetUniformMatrix4x4("positionToClip", &matrix[0][0]);
@@ -106,17 +109,17 @@ bool ObjectIntersectionBuffer::draw(
 }
 
 //------------------------------------------------------------------------------
-void ObjectIntersectionBuffer::upload(const PrimaryHits& primary)
+void ObjectIntersectionBuffer::upload(const PrimaryHits& primary, const PixelBounds& bounds)
 {
   this->TrianglesDrawn = 0;
-  this->Hits.upload(primary.ids.data());
+  this->Hits.upload(primary.ids.data(), bounds);
   std::vector<float> depths;
   depths.reserve(primary.clipDepths.size());
   for (const double z : primary.clipDepths)
   {
     depths.push_back(this->Convention.storedDepth(z));
   }
-  this->Depth.upload(depths.data());
+  this->Depth.upload(depths.data(), bounds);
 }
 
 } // namespace gl

@@ -7,11 +7,13 @@
 #include "Rendering/OpenGL2/GeometryBuffers.h"
 #include "Rendering/OpenGL2/ObjectPool.h"
 
+#include "Rendering/Core/PixelBounds.h"
 #include "Rendering/Core/Plan/FramePlan.h"
 #include "Rendering/Core/Snapshot.h"
 #include "Rendering/Core/Tracing/Tracer.h"
 
 #include <cstdint>
+#include <vector>
 
 class vtkOpenGLRenderWindow;
 
@@ -31,13 +33,13 @@ public:
   // Makes the target fit; true when what it held is lost.
   bool resize(int width, int height, Visibility visibility);
 
-  // Rasterises the parts that the camera sees. Returns false when a shader or the framebuffer is
-  // not usable; an error message has been given then.
+  // Rasterises those parts within those pixels; what the others hold is left undefined. Returns false
+  // when a shader or the framebuffer is not usable; an error message has been given then.
   bool draw(vtkOpenGLRenderWindow* window, const Snapshot& snapshot,
-    const GeometryBuffers& geometry);
+    const GeometryBuffers& geometry, const std::vector<bool>& parts, const PixelBounds& bounds);
 
-  // Takes the ids and depths that primary rays have found instead.
-  void upload(const PrimaryHits& primary);
+  // Takes the ids and depths that primary rays have found within the bounds instead.
+  void upload(const PrimaryHits& primary, const PixelBounds& bounds);
 
   const Image2D& hits() const { return this->Hits; }
   const Image2D& depth() const { return this->Depth; }

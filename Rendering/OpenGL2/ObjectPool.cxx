@@ -175,11 +175,23 @@ bool Image2D::allocate(int width, int height, GLenum internalFormat, GLenum form
 }
 
 //------------------------------------------------------------------------------
-void Image2D::upload(const void* pixels)
+void Image2D::upload(const void* pixels, const PixelBounds& bounds)
 {
   const ScopedTexture bound(GL_TEXTURE_2D, this->Texture);
-  glTexSubImage2D(
-    GL_TEXTURE_2D, 0, 0, 0, this->Width, this->Height, this->Format, this->Type, pixels);
+  const GLenum names[3] = { GL_UNPACK_ROW_LENGTH, GL_UNPACK_SKIP_PIXELS, GL_UNPACK_SKIP_ROWS };
+  const GLint values[3] = { this->Width, bounds.x0, bounds.y0 };
+  GLint before[3];
+  for (int i = 0; i < 3; ++i)
+  {
+    glGetIntegerv(names[i], &before[i]);
+    glPixelStorei(names[i], values[i]);
+  }
+  glTexSubImage2D(GL_TEXTURE_2D, 0, bounds.x0, bounds.y0, bounds.width(), bounds.height(),
+    this->Format, this->Type, pixels);
+  for (int i = 0; i < 3; ++i)
+  {
+    glPixelStorei(names[i], before[i]);
+  }
 }
 
 //------------------------------------------------------------------------------

@@ -7,6 +7,8 @@
 
 #include "Rendering/OpenGL2/GLHeader.h"
 
+#include "Rendering/Core/PixelBounds.h"
+
 #include "vtkType.h"
 #include "vtkWeakPointer.h"
 
@@ -78,7 +80,8 @@ public:
   explicit Image2D(ObjectPool& pool);
   // True when the storage was made anew (size or format differ from before).
   bool allocate(int width, int height, GLenum internalFormat, GLenum format, GLenum type);
-  void upload(const void* pixels);
+  // Copies the pixels within the bounds, which lie within the image. `pixels`: of the whole image.
+  void upload(const void* pixels, const PixelBounds& bounds);
   void bind(int unit) const;
   GLuint name() const { return this->Texture; }
   int width() const { return this->Width; }

@@ -74,5 +74,12 @@ void OffscreenState::setViewport(int x, int y, int width, int height)
   this->State->vtkglScissor(x, y, width, height);
 }
 
+//------------------------------------------------------------------------------
+void OffscreenState::setScissor(const PixelBounds& bounds)
+{
+  this->State->vtkglEnable(GL_SCISSOR_TEST);
+  this->State->vtkglScissor(bounds.x0, bounds.y0, bounds.width(), bounds.height());
+}
+
 } // namespace gl
 } // namespace hrt

@@ -5,6 +5,8 @@
 #include "Rendering/OpenGL2/DepthConvention.h"
 #include "Rendering/OpenGL2/GLHeader.h"
 
+#include "Rendering/Core/PixelBounds.h"
+
 class vtkOpenGLRenderWindow;
 class vtkOpenGLState;
 
@@ -32,6 +34,8 @@ public:
   void beginScreenPass();
   // Restricts drawing and clearing to a part of the target.
   void setViewport(int x, int y, int width, int height);
+  // The same without moving the viewport: what is drawn inside is what would be drawn without it.
+  void setScissor(const PixelBounds& bounds);
 
 private:
   vtkOpenGLRenderWindow* Window;

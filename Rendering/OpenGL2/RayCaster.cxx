@@ -69,8 +69,15 @@ bool RayCaster::readShadow(vtkOpenGLRenderWindow* window, const Inputs& inputs, 
   const int width = inputs.hits.hits().width();
   const int height = inputs.hits.hits().height();
   this->Share.allocate(width, height, GL_RGBA32F, GL_RGBA, GL_FLOAT);
-  share.assign(static_cast<std::size_t>(width) * height, 0.0f);
-  return this->shade(window, inputs, this->Share, light, &share);
+  share.assign(
+    static_cast<std::size_t>(width) * height, std::numeric_limits<float>::quiet_NaN());
+  std::vector<float> inside(inputs.bounds.pixels());
+  if (!this->shade(window, inputs, this->Share, light, &inside))
+  {
+    return false;
+  }
+  placeRows(inside.data(), inputs.bounds, width, share);
+  return true;
 }
 
 //------------------------------------------------------------------------------
@@ -89,6 +96,7 @@ bool RayCaster::shade(vtkOpenGLRenderWindow* window, const Inputs& inputs, const
     return false;
   }
   state.beginScreenPass();
+  state.setScissor(inputs.bounds);
   // No hit: alpha 0 in the image, NaN in the user's buffer.
   const float none = readBack ? std::numeric_limits<float>::quiet_NaN() : 0.0f;
   const float noHit[4] = { none, none, none, none };
@@ -128,7 +136,8 @@ bool RayCaster::shade(vtkOpenGLRenderWindow* window, const Inputs& inputs, const
   if (readBack)
   {
     glReadBuffer(GL_COLOR_ATTACHMENT0);
-    glReadPixels(0, 0, target.width(), target.height(), GL_RED, GL_FLOAT, readBack->data());
+    glReadPixels(inputs.bounds.x0, inputs.bounds.y0, inputs.bounds.width(),
+      inputs.bounds.height(), GL_RED, GL_FLOAT, readBack->data());
   }
   releaseProgram(window);
   return true;

@@ -33,11 +33,13 @@ public:
     const PartTables& tables;
     const ShadowMaps& shadows;
     const ObjectIntersectionBuffer& hits;
+    const PixelBounds& bounds; // what is shaded
   };
 
   // Shades the primary image into `target`, of the hits' size. False after an error message.
   bool draw(vtkOpenGLRenderWindow* window, const Inputs& inputs, const Image2D& target);
-  // The visible share of one light per pixel, row 0 at the bottom; NaN where there is no hit.
+  // The visible share of one light per pixel, row 0 at the bottom; NaN where there is no hit and
+  // outside the bounds.
   bool readShadow(vtkOpenGLRenderWindow* window, const Inputs& inputs, int light,
     std::vector<float>& share);
 

@@ -1,11 +1,14 @@
 // See RemainingProps.h.
 #include "Rendering/OpenGL2/RemainingProps.h"
 
+#include "Rendering/OpenGL2/GLHeader.h"
+
 #include "vtkDualDepthPeelingPass.h"
 #include "vtkFrameBufferObjectBase.h"
 #include "vtkOpaquePass.h"
 #include "vtkOpenGLFXAAFilter.h"
 #include "vtkOpenGLRenderer.h"
+#include "vtkOpenGLState.h"
 #include "vtkOrderIndependentTranslucentPass.h"
 #include "vtkOverlayPass.h"
 #include "vtkProp.h"
@@ -100,6 +103,33 @@ int RemainingProps::draw(
   this->Overlay->Render(&overlays);
   drawn += this->Overlay->GetNumberOfRenderedProps();
   return drawn;
+}
+
+//------------------------------------------------------------------------------
+void RemainingProps::closeOutside(
+  vtkOpenGLState* state, const PixelBounds& bounds, const int origin[2], const int size[2])
+{
+  if (bounds == PixelBounds().within(size[0], size[1]))
+  {
+    return;
+  }
+  const PixelBounds around[4] = { { 0, size[0], 0, bounds.y0 },
+    { 0, size[0], bounds.y1, size[1] }, { 0, bounds.x0, bounds.y0, bounds.y1 },
+    { bounds.x1, size[0], bounds.y0, bounds.y1 } };
+  vtkOpenGLState::ScopedglEnableDisable scissorTest(state, GL_SCISSOR_TEST);
+  vtkOpenGLState::ScopedglScissor scissor(state);
+  vtkOpenGLState::ScopedglDepthMask depthMask(state);
+  GLdouble before = 1.0;
+  glGetDoublev(GL_DEPTH_CLEAR_VALUE, &before);
+  state->vtkglEnable(GL_SCISSOR_TEST);
+  state->vtkglDepthMask(GL_TRUE);
+  state->vtkglClearDepth(0.0);
+  for (const PixelBounds& side : around)
+  {
+    state->vtkglScissor(origin[0] + side.x0, origin[1] + side.y0, side.width(), side.height());
+    state->vtkglClear(GL_DEPTH_BUFFER_BIT);
+  }
+  state->vtkglClearDepth(before);
 }
 
 //------------------------------------------------------------------------------

@@ -3,6 +3,8 @@
 // translucent geometry with depth peeling when asked for, volumes and overlays.
 #pragma once
 
+#include "Rendering/Core/PixelBounds.h"
+
 #include "vtkNew.h"
 #include "vtkSmartPointer.h"
 
@@ -11,6 +13,7 @@
 
 class vtkOpaquePass;
 class vtkOpenGLFXAAFilter;
+class vtkOpenGLState;
 class vtkOverlayPass;
 class vtkProp;
 class vtkRenderPass;
@@ -35,6 +38,13 @@ public:
   int draw(const vtkRenderState* state, const std::function<bool(vtkProp*)>& traced);
 
   void releaseGraphicsResources(vtkWindow* window);
+
+  // Keeps what is drawn from now on within the bounds: around them, in a viewport of that origin and
+  // size, the depth becomes the nearest there is; colours stay. VTK's passes set scissors of their own,
+  // and depth peeling goes on for as long as any pixel of the viewport needs it: without our depth
+  // there, pixels outside would make it peel otherwise than the whole frame does.
+  static void closeOutside(
+    vtkOpenGLState* state, const PixelBounds& bounds, const int origin[2], const int size[2]);
 
 private:
   int drawTranslucent(const vtkRenderState& state, bool withVolumes);

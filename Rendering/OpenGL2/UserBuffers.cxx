@@ -93,6 +93,17 @@ vtkSmartPointer<vtkImageData> makeImage(
   return image;
 }
 
+// Calls visit(first, end) for the pixels of each row within the bounds.
+template <class Visit>
+void forEachRow(const PixelBounds& bounds, int width, Visit visit)
+{
+  for (int row = bounds.y0; row < bounds.y1; ++row)
+  {
+    const std::size_t left = std::size_t(row) * std::size_t(width);
+    visit(left + std::size_t(bounds.x0), left + std::size_t(bounds.x1));
+  }
+}
+
 // Ids are exact in a double up to 2^53, triangle and cell numbers stay far below.
 template <class Array>
 vtkSmartPointer<vtkDataArray> makeArray(const std::vector<double>& values, int components)
@@ -140,18 +151,22 @@ std::string UserBuffers::update(FrameRenderer& frame, const Snapshot& snapshot)
 
   // When nothing is in view the frame has drawn no ids: the last ones are not this frame's.
   std::vector<std::uint32_t> ids(pixels, 0);
+  // Direct rendering shows what it has: the rasteriser's (u, v) and the points they give.
+  std::vector<glm::dvec2> rasterised;
   if (frame.statistics().plan[Stage::Blit].run)
   {
-    ids = frame.ids();
-    if (ids.size() != pixels)
+    const std::vector<std::uint32_t>& all = frame.ids();
+    if (all.size() != pixels)
     {
       return "the object intersection buffer could not be read back";
     }
+    forEachRow(frame.bounds(), camera.width, [&](std::size_t first, std::size_t end) {
+      std::copy(all.begin() + static_cast<std::ptrdiff_t>(first),
+        all.begin() + static_cast<std::ptrdiff_t>(end),
+        ids.begin() + static_cast<std::ptrdiff_t>(first));
+    });
+    frame.readBarycentrics(rasterised);
   }
-
-  // Direct rendering shows what it has: the rasteriser's (u, v) and the points they give.
-  std::vector<glm::dvec2> rasterised;
-  frame.readBarycentrics(rasterised);
 
   std::map<std::string, std::vector<double>> values;
   for (const std::string& name : this->Names)
@@ -216,10 +231,12 @@ std::string UserBuffers::update(FrameRenderer& frame, const Snapshot& snapshot)
       {
         return "the shadow buffer could not be drawn";
       }
-      for (std::size_t i = 0; i < pixels; ++i)
-      {
-        shares->SetComponent(static_cast<vtkIdType>(i), light, share[i]);
-      }
+      forEachRow(frame.bounds(), camera.width, [&](std::size_t first, std::size_t end) {
+        for (std::size_t i = first; i < end; ++i)
+        {
+          shares->SetComponent(static_cast<vtkIdType>(i), light, share[i]);
+        }
+      });
     }
     this->Images["shadow"] = makeImage(camera, "shadow", shares);
   }

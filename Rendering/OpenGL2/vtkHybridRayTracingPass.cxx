@@ -83,6 +83,8 @@ void vtkHybridRayTracingPass::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "Interleave: " << this->Interleave << "\n";
   os << indent << "InterleaveErrorControl: " << (this->InterleaveErrorControl ? "On" : "Off")
      << "\n";
+  os << indent << "PixelBounds: " << this->PixelBounds[0] << " " << this->PixelBounds[1] << " "
+     << this->PixelBounds[2] << " " << this->PixelBounds[3] << "\n";
   os << indent << "Buffers:";
   for (const std::string& name : this->Internals->Buffers.names())
   {
@@ -220,6 +222,25 @@ void vtkHybridRayTracingPass::SetInterleave(int n)
     this->Interleave = clamped;
     this->Modified();
   }
+}
+
+//------------------------------------------------------------------------------
+void vtkHybridRayTracingPass::SetPixelBounds(int x0, int x1, int y0, int y1)
+{
+  const int bounds[4] = { x0, x1, y0, y1 };
+  if (!std::equal(bounds, bounds + 4, this->PixelBounds))
+  {
+    std::copy_n(bounds, 4, this->PixelBounds);
+    // Where the new bounds show nothing no stage runs that would outdate the buffers.
+    this->Internals->Buffers.invalidate();
+    this->Modified();
+  }
+}
+
+//------------------------------------------------------------------------------
+void vtkHybridRayTracingPass::SetPixelBounds(const int bounds[4])
+{
+  this->SetPixelBounds(bounds[0], bounds[1], bounds[2], bounds[3]);
 }
 
 //------------------------------------------------------------------------------
@@ -388,6 +409,8 @@ void vtkHybridRayTracingPass::RenderPicture(const vtkRenderState* s,
     this->NumberOfRenderedProps = s->GetPropArrayCount();
     return;
   }
+  hrt::gl::RemainingProps::closeOutside(
+    window->GetState(), this->BoundsWithin(size), origin, size);
   vtkHybridScene* scene = this->Internals->Scene;
   const auto isTraced = [scene](vtkProp* prop) { return scene->IsDrawnByTracer(prop); };
   this->NumberOfRenderedProps =
@@ -400,6 +423,13 @@ void vtkHybridRayTracingPass::RenderPicture(const vtkRenderState* s,
   {
     vtkErrorMacro("OpenGL reported error 0x" << std::hex << glError << std::dec);
   }
+}
+
+//------------------------------------------------------------------------------
+hrt::PixelBounds vtkHybridRayTracingPass::BoundsWithin(const int size[2]) const
+{
+  const int* b = this->PixelBounds;
+  return hrt::PixelBounds{ b[0], b[1], b[2], b[3] }.within(size[0], size[1]);
 }
 
 //------------------------------------------------------------------------------
@@ -436,6 +466,7 @@ std::string vtkHybridRayTracingPass::TraceFrame(const vtkRenderState* s,
     vtkWarningMacro("Multisampling has no effect on what the GPU shades, which always clamps; it "
                     "holds for what the CPU traces (SetPrimaryShadingToCPU)");
   }
+  settings.setBounds(this->BoundsWithin(size), size[0], size[1]);
 
   hrt::gl::FrameRenderer& frame = in.Frame(window);
   settings.pipelined = this->Pipelined == PipelinedInAnimations ||

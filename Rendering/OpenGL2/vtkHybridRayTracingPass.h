@@ -44,6 +44,11 @@ class vtkImageData;
 class vtkOpenGLRenderWindow;
 class vtkProp;
 
+namespace hrt
+{
+struct PixelBounds;
+}
+
 class VTKHYBRIDRENDERINGOPENGL2_EXPORT vtkHybridRayTracingPass : public vtkRenderPass
 {
 public:
@@ -270,6 +275,23 @@ public:
 
   ///@{
   /**
+   * The pixels to trace: columns [x0, x1) and rows [y0, y1) of the renderer's viewport, row 0 at the
+   * bottom. Everything that the frame costs - rasterised parts, shading, read-back, rays - is
+   * restricted to them, and the pixels inside are those of the unrestricted frame, bit by bit; so
+   * workers that each trace some of a picture's pixels can put it together (sort first; paper,
+   * section 2.1). Outside, the framebuffer keeps its background, its depth is that of the near plane,
+   * which keeps out the props that VTK draws itself (overlays excepted), and buffers say that nothing
+   * was hit. Values outside the viewport are clamped to it; where nothing remains nothing is drawn.
+   * ResetPixelBounds: everything. Default: everything, x0 = y0 = 0 and x1 = y1 = VTK_INT_MAX.
+   */
+  void SetPixelBounds(int x0, int x1, int y0, int y1);
+  void SetPixelBounds(const int bounds[4]);
+  vtkGetVector4Macro(PixelBounds, int);
+  void ResetPixelBounds() { this->SetPixelBounds(0, VTK_INT_MAX, 0, VTK_INT_MAX); }
+  ///@}
+
+  ///@{
+  /**
    * Per-pixel results to keep besides the picture, by name; nothing is computed that was not asked
    * for. Names: "triangle" (number in the scene), "cell" (vtkPolyData cell), "prop" (see
    * GetPropFromId), all three 64-bit with -1 where nothing was hit; "barycentric" (u, v of the
@@ -320,6 +342,7 @@ private:
   // Draws everything into the bound framebuffer, size pixels large from origin on.
   void RenderPicture(const vtkRenderState* s, vtkOpenGLRenderWindow* window, const int size[2],
     const int origin[2]);
+  hrt::PixelBounds BoundsWithin(const int size[2]) const;
   // The traced part of it; what went wrong, or empty.
   std::string TraceFrame(const vtkRenderState* s, vtkOpenGLRenderWindow* window,
     const int size[2], const int origin[2]);
@@ -336,6 +359,7 @@ private:
   int Multisampling = Clamp;
   int Interleave = 1;
   bool InterleaveErrorControl = true;
+  int PixelBounds[4] = { 0, VTK_INT_MAX, 0, VTK_INT_MAX };
 
   class vtkInternals;
   std::unique_ptr<vtkInternals> Internals;

@@ -26,6 +26,7 @@ from vtkmodules.vtkCommonCore import vtkOutputWindow  # noqa: E402
 from vtkmodules.vtkRenderingCore import vtkRenderWindow, vtkWindowToImageFilter  # noqa: E402
 
 COMPARE_EVERY = 100
+EVERYTHING = (0, 2**31 - 1, 0, 2**31 - 1)
 # Settings and the values that are drawn from; small maps, so that a frame is short.
 SETTINGS = {
     "Visibility": (0, 0, 0, 1, 2),
@@ -37,6 +38,8 @@ SETTINGS = {
     "Refractions": (False, True),
     "MaximumDepth": (0, 1, 3),
     "Pipelined": (0, 1, 1, 1),
+    "PixelBounds": (EVERYTHING, EVERYTHING, (20, 120, 10, 90), (0, 60, 0, 999), (70, 90, -5, 300),
+                    (230, 300, 0, 9)),
 }
 
 

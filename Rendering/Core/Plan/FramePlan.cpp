@@ -3,6 +3,8 @@
 // still valid after it.
 #include "Rendering/Core/Plan/FramePlan.h"
 
+#include "Rendering/Core/Plan/PixelFrustum.h"
+
 #include <algorithm>
 
 namespace hrt
@@ -78,6 +80,7 @@ public:
     }
     return this->C.camera ? "the camera changed"
       : this->C.culling   ? "face culling changed"
+      : this->Settings.bounds     ? "the pixel bounds changed"
       : this->Settings.visibility ? "the visibility setting changed"
                                   : nullptr;
   }
@@ -324,7 +327,8 @@ StageDecision planStructure(
 // Pipelining shows each frame of an animation one frame late (paper, section 3.3). Whatever must be of
 // one frame with the picture, or must not be seen once it is gone, forbids it.
 StageDecision planPipelining(const Facts& facts, const Settings& settings, const FramePlan& plan,
-  const Changes& changes, const Inputs& inputs, const Caches& caches)
+  const Changes& changes, const SettingsChanges& settingsChanges, const Inputs& inputs,
+  const Caches& caches)
 {
   const Circumstances& around = facts.circumstances;
   const Stage traced = settings.shadesOnCPU() ? Stage::PrimaryShading : Stage::SecondaryRays;
@@ -333,6 +337,7 @@ StageDecision planPipelining(const Facts& facts, const Settings& settings, const
     : !plan[traced].run      ? skip("no rays are traced")
     : !around.animation      ? skip("no interactive update rate is asked for")
     : changes.first || changes.geometry ? skip("what is gone must not be shown")
+    : settingsChanges.bounds  ? skip("the frame before shows other pixels")
     : !caches.previousPicture ? skip("there is no frame before to be shown")
     : !plan[Stage::Visibility].run && !inputs.secondaryImage()
     ? skip("nothing changed: the frame is finished")
@@ -352,37 +357,6 @@ StageDecision planBlit(const Facts& facts, const FramePlan& plan)
   const bool anyStage = std::any_of(plan.stages.begin(), plan.stages.end(),
     [](const StageDecision& stage) { return stage.run; });
   return run(anyStage ? "the image is new" : "nothing changed since the last frame");
-}
-
-// -- gathering facts -----------------------------------------------------------------------------
-
-// Whether a box is not wholly outside one clip plane. Never false for a box that is seen; a box
-// near a corner of the frustum may be counted as seen, which costs time but no pixel.
-bool boxInFrustum(const glm::dmat4& toClip, const glm::dvec3& lower, const glm::dvec3& upper)
-{
-  bool beyondLower[3] = { true, true, true };
-  bool beyondUpper[3] = { true, true, true };
-  for (int corner = 0; corner < 8; ++corner)
-  {
-    const glm::dvec4 clip = toClip *
-      glm::dvec4((corner & 1) ? upper.x : lower.x, (corner & 2) ? upper.y : lower.y,
-        (corner & 4) ? upper.z : lower.z, 1.0);
-    for (int axis = 0; axis < 3; ++axis)
-    {
-      beyondLower[axis] = beyondLower[axis] && clip[axis] < -clip.w;
-      beyondUpper[axis] = beyondUpper[axis] && clip[axis] > clip.w;
-    }
-  }
-  const auto outside = [](const bool* beyond) { return beyond[0] || beyond[1] || beyond[2]; };
-  return !outside(beyondLower) && !outside(beyondUpper);
-}
-
-bool inView(const Part& part, const glm::dmat4& worldToClip)
-{
-  glm::dvec3 lower, upper;
-  worldBounds(part, lower, upper);
-  return part.visibleToCamera && part.geometry->triangleCount() > 0 &&
-    boxInFrustum(worldToClip, lower, upper);
 }
 
 } // namespace
@@ -424,6 +398,7 @@ SettingsChanges compareSettings(const Settings& before, const Settings& now)
     (now.visibility == Visibility::RayCasting && interleave);
   changes.sampling = interleave || before.usedMultisampling() != now.usedMultisampling();
   changes.structure = before.accelerator != now.accelerator;
+  changes.bounds = before.bounds != now.bounds || before.tracedBounds != now.tracedBounds;
   changes.shading = before.shadows != now.shadows || before.primaryShading != now.primaryShading ||
     (now.shadows == ShadowMode::ShadowMaps &&
       before.shadowMapResolution != now.shadowMapResolution);
@@ -447,6 +422,10 @@ FramePlan planStages(const Facts& facts, const Settings& settings, const Inputs&
   }
   plan[Stage::ShadowMaps] = summarizeShadowMaps(plan.shadowMaps);
   plan[Stage::Visibility] = planVisibility(facts, inputs, caches);
+  if (plan[Stage::Visibility].run && rasterises(settings))
+  {
+    plan.rasterised = facts.partInView;
+  }
   plan[Stage::PrimaryShading] = planPrimaryShading(facts, settings, plan, inputs, caches);
   plan[Stage::SecondaryRays] = planSecondary(secondary, settings, plan, inputs, caches);
   plan[Stage::ShadowReadBack] = planShadowReadBack(settings, plan, caches);
@@ -467,7 +446,7 @@ FramePlan planFrame(const Facts& facts, const Settings& settings,
   const Inputs inputs(changes, settingsChanges);
   FramePlan plan = planStages(facts, settings, inputs, caches);
   const StageDecision pipelined =
-    planPipelining(facts, settings, plan, changes, inputs, caches);
+    planPipelining(facts, settings, plan, changes, settingsChanges, inputs, caches);
   if (pipelined.run)
   {
     // The frame before keeps its buffers until it is shown; this one fills others.
@@ -520,14 +499,15 @@ Caches cachesAfter(const FramePlan& plan, const Settings& settings,
   return after;
 }
 
-Facts gatherFacts(const Snapshot& snapshot)
+Facts gatherFacts(const Snapshot& snapshot, const PixelBounds& bounds)
 {
   Facts facts;
   facts.triangles = snapshot.triangleCount;
-  const glm::dmat4 worldToClip = snapshot.camera.viewToClip * snapshot.camera.worldToView;
+  const PixelFrustum frustum(snapshot.camera, bounds);
   for (const Part& part : snapshot.parts)
   {
-    const bool seen = inView(part, worldToClip);
+    const bool seen = part.visibleToCamera && frustum.mayShow(part);
+    facts.partInView.push_back(seen);
     facts.anyPartInView = facts.anyPartInView || seen;
     facts.mirrorInView = facts.mirrorInView || (seen && part.material.isMirror());
     facts.glassInView = facts.glassInView || (seen && part.material.isGlass());

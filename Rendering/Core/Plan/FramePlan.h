@@ -3,6 +3,7 @@
 // the code decides to skip anything.
 #pragma once
 
+#include "Rendering/Core/PixelBounds.h"
 #include "Rendering/Core/Snapshot.h"
 #include "Rendering/Core/Tracing/Multisampling.h"
 
@@ -52,6 +53,8 @@ struct Settings
   Multisampling multisampling = Multisampling::Clamp;
   int interleave = 1;            // every n-th column and row is traced
   bool interleaveErrorControl = true;
+  PixelBounds bounds;            // pixels to show, within the viewport
+  PixelBounds tracedBounds;      // these and what they depend on: see setBounds
 
   // Shadow rays end at the CPU, and so must be shaded what they were cast for.
   bool shadesOnCPU() const
@@ -70,6 +73,13 @@ struct Settings
   {
     return visibility == Visibility::ItemBuffer ? multisampling : Multisampling::Clamp;
   }
+  // After all other settings are made; multisampling and interleaving look at neighbours.
+  void setBounds(const PixelBounds& wanted, int width, int height)
+  {
+    bounds = wanted.within(width, height);
+    tracedBounds =
+      bounds.grownBy(pixelsAround(usedMultisampling(), interleave)).within(width, height);
+  }
 };
 
 // Which results a change of the settings outdates.
@@ -80,6 +90,7 @@ struct SettingsChanges
   bool secondary = false;  // reflections, refractions, depth
   bool sampling = false;   // from which pixels and triangles rays start on the CPU
   bool structure = false;  // the kind of ray structure
+  bool bounds = false;     // which pixels are traced
 };
 SettingsChanges compareSettings(const Settings& before, const Settings& now);
 
@@ -98,7 +109,9 @@ struct Facts
 {
   Circumstances circumstances;
   std::uint64_t triangles = 0;        // in the snapshot
-  bool anyPartInView = false;         // some part that the camera sees meets the view frustum
+  // Per part: the camera sees it and it meets the view frustum of the pixel bounds.
+  std::vector<bool> partInView;
+  bool anyPartInView = false;
   bool mirrorInView = false;          // same, for a part with reflectance
   bool glassInView = false;           // same, for a part of glass
   bool anyCaster = false;
@@ -149,6 +162,7 @@ struct FramePlan
 {
   std::array<StageDecision, kStageCount> stages;
   std::vector<StageDecision> shadowMaps; // per light of the snapshot
+  std::vector<bool> rasterised;          // per part: drawn into the object intersection buffer
   bool useSecondaryImage = false;        // composite the secondary image over the primary one
   StageDecision pipelined;               // trace on after the frame, which shows the one before
   bool keepsTracing = false;             // the rays under way since the last frame are still wanted
@@ -161,7 +175,7 @@ FramePlan planFrame(const Facts& facts, const Settings& settings,
   const SettingsChanges& settingsChanges, const Changes& changes, const Caches& caches);
 
 // Gathers the facts of a snapshot; `lightCanCast` included.
-Facts gatherFacts(const Snapshot& snapshot);
+Facts gatherFacts(const Snapshot& snapshot, const PixelBounds& bounds = {});
 
 // What is valid after a frame that ran the plan: results of stages that ran are; results of stages
 // that were skipped although what they depend on changed are no longer. Without this a structure

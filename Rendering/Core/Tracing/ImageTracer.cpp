@@ -54,7 +54,16 @@ public:
     const bool everything = wanted == Wanted::Everything;
     image.pixels.assign(std::size_t(camera.width) * camera.height,
       glm::vec4(0.0f, 0.0f, 0.0f, everything ? 0.0f : 1.0f));
-    this->TileRows = everything || settings.maximumDepth > 0 ? tilesAlong(this->Samples.rows()) : 0;
+    if (everything || settings.maximumDepth > 0)
+    {
+      this->Bounds = settings.bounds.within(camera.width, camera.height);
+      this->SampleBounds = this->Samples.samplesWithin(this->Bounds);
+    }
+    if (!this->SampleBounds.empty())
+    {
+      this->Started = this->SampleBounds.y0 / kTile;
+      this->TileRows = tilesAlong(this->SampleBounds.y1);
+    }
     if (settings.interleave > 1)
     {
       this->Notes.resize(std::size_t(this->Samples.columns()) * this->Samples.rows());
@@ -86,7 +95,7 @@ public:
   {
     this->idsReady(this->Frame.snapshot.camera.height);
     this->Tasks.wait();
-    if (this->TileRows > 0 && this->Frame.settings.interleave > 1)
+    if (!this->Bounds.empty() && this->Frame.settings.interleave > 1)
     {
       this->traceBetweenSamples();
     }
@@ -105,7 +114,7 @@ private:
   // The rows of ids, counted from the bottom, that a row of tiles depends on.
   int rowsLookedAt(int tileRow) const
   {
-    const TileSpan rows(tileRow, this->Samples.rows());
+    const TileSpan rows(tileRow, this->SampleBounds.y0, this->SampleBounds.y1);
     return std::min(this->Samples.pixelRow(rows.first + rows.count - 1) + 1 +
         reachOf(this->Frame.settings.multisampling),
       this->Frame.snapshot.camera.height);
@@ -113,15 +122,15 @@ private:
 
   void traceTileRow(int row)
   {
-    tbb::parallel_for(0, tilesAlong(this->Samples.columns()),
+    tbb::parallel_for(this->SampleBounds.x0 / kTile, tilesAlong(this->SampleBounds.x1),
       [this, row](int column) { this->traceSamples(column, row); });
   }
 
   void traceSamples(int tileColumn, int tileRow)
   {
     Local& local = this->Locals.local();
-    const TileSpan columns(tileColumn, this->Samples.columns());
-    const TileSpan rows(tileRow, this->Samples.rows());
+    const PixelBounds& bounds = this->SampleBounds;
+    const TileSpan columns(tileColumn, bounds.x0, bounds.x1), rows(tileRow, bounds.y0, bounds.y1);
     local.pixels.clear();
     forEachInBlocks(columns.count, rows.count, [&](int x, int y) {
       local.pixels.push_back(this->Samples.pixel(columns.first + x, rows.first + y));
@@ -153,9 +162,10 @@ private:
 
   void traceBetweenSamples()
   {
-    const Camera& camera = this->Frame.snapshot.camera;
+    const PixelBounds& bounds = this->Bounds;
     using Range = tbb::blocked_range2d<int>;
-    tbb::parallel_for(Range(0, tilesAlong(camera.height), 1, 0, tilesAlong(camera.width), 1),
+    tbb::parallel_for(Range(bounds.y0 / kTile, tilesAlong(bounds.y1), 1, bounds.x0 / kTile,
+                        tilesAlong(bounds.x1), 1),
       [this](const Range& range) {
         for (int row = range.rows().begin(); row < range.rows().end(); ++row)
         {
@@ -172,7 +182,8 @@ private:
   {
     Local& local = this->Locals.local();
     const Camera& camera = this->Frame.snapshot.camera;
-    const TileSpan columns(tileColumn, camera.width), rows(tileRow, camera.height);
+    const PixelBounds& bounds = this->Bounds;
+    const TileSpan columns(tileColumn, bounds.x0, bounds.x1), rows(tileRow, bounds.y0, bounds.y1);
     const Interpolation interpolation(this->Frame, this->Samples, this->Light);
     local.pixels.clear();
     forEachInBlocks(columns.count, rows.count, [&](int x, int y) {
@@ -256,8 +267,10 @@ private:
   const Lattice Samples; // all pixels without interleaving
   std::vector<TileTracer::Note> Notes; // of the samples, for the second pass
   tbb::enumerable_thread_specific<Local> Locals;
-  int TileRows = 0;
-  int Started = 0; // rows of tiles
+  PixelBounds Bounds{ 0, 0, 0, 0 };       // of the pixels to trace, within the picture
+  PixelBounds SampleBounds{ 0, 0, 0, 0 }; // of the samples among them
+  int TileRows = 0;   // up to the last row of tiles
+  int Started = 0;    // rows of tiles, from the bottom
   tbb::task_group Tasks;
 };
 

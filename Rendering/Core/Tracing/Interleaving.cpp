@@ -50,6 +50,18 @@ Lattice::Lattice(const Camera& camera, int n)
 {
 }
 
+int Lattice::Axis::from(int pixel) const
+{
+  const auto found = std::lower_bound(this->samples.begin(), this->samples.end(), pixel);
+  return static_cast<int>(found - this->samples.begin());
+}
+
+PixelBounds Lattice::samplesWithin(const PixelBounds& pixels) const
+{
+  return { this->X.from(pixels.x0), this->X.from(pixels.x1), this->Y.from(pixels.y0),
+    this->Y.from(pixels.y1) };
+}
+
 Interpolation::Interpolation(const TracedFrame& frame, const Lattice& lattice, Wanted wanted)
   : Frame(frame)
   , Samples(lattice)

@@ -4,6 +4,7 @@
 // it, and traced otherwise.
 #pragma once
 
+#include "Rendering/Core/PixelBounds.h"
 #include "Rendering/Core/Tracing/TileTracer.h"
 
 #include <algorithm>
@@ -33,6 +34,9 @@ public:
   {
     return this->X.places[pixelColumn].count == 1 && this->Y.places[pixelRow].count == 1;
   }
+
+  // Columns and rows of the samples among those pixels.
+  PixelBounds samplesWithin(const PixelBounds& pixels) const;
 
   // The samples around a pixel, one to four of them, with bilinear weights that sum to 1. One: the
   // pixel is that sample.
@@ -80,6 +84,8 @@ private:
   struct Axis
   {
     Axis(int pixels, int n);
+    // The first sample at or behind a pixel; their number where there is none.
+    int from(int pixel) const;
     std::vector<int> samples;  // their pixels
     std::vector<Place> places; // of the pixels
   };

@@ -36,6 +36,14 @@ constexpr int reachOf(Multisampling mode)
   return 0;
 }
 
+// How far away the ids and samples may lie that a pixel's colour depends on. A pixel whose triangle is
+// missed takes the mean of others within the reach; each of these is interpolated between samples up to
+// interleave - 1 pixels away; and a sample tries the triangles within its reach.
+constexpr int pixelsAround(Multisampling mode, int interleave)
+{
+  return 2 * reachOf(mode) + interleave - 1;
+}
+
 constexpr bool testsAlways(Multisampling mode)
 {
   return mode == Multisampling::Full3x3 || mode == Multisampling::Full5x5;

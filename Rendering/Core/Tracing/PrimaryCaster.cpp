@@ -151,20 +151,26 @@ struct Local
   std::vector<std::uint32_t> pixels;
 };
 
-// Calls visit(local, columns, rows) for every tile of a picture or lattice, on all threads.
+// Calls visit(local, columns, rows) for every tile within the bounds in a picture or lattice, on all
+// threads.
 template <class Locals, class Visit>
-void forEachTile(int columns, int rows, Locals& locals, Visit visit)
+void forEachTile(const PixelBounds& bounds, Locals& locals, Visit visit)
 {
+  if (bounds.empty())
+  {
+    return;
+  }
   using Range = tbb::blocked_range2d<int>;
   tbb::parallel_for(
-    Range(0, tilesAlong(rows), 1, 0, tilesAlong(columns), 1), [&](const Range& range) {
+    Range(bounds.y0 / kTile, tilesAlong(bounds.y1), 1, bounds.x0 / kTile, tilesAlong(bounds.x1), 1),
+    [&](const Range& range) {
       Local& local = locals.local();
       for (int row = range.rows().begin(); row < range.rows().end(); ++row)
       {
         for (int column = range.cols().begin(); column < range.cols().end(); ++column)
         {
           local.pixels.clear();
-          visit(local, TileSpan(column, columns), TileSpan(row, rows));
+          visit(local, TileSpan(column, bounds.x0, bounds.x1), TileSpan(row, bounds.y0, bounds.y1));
           local.caster.cast(local.pixels, local.count);
         }
       }
@@ -184,7 +190,8 @@ RayCounters castPrimaryRays(const Snapshot& snapshot, const Structure& structure
   const Lattice lattice(camera, settings.interleave);
   tbb::enumerable_thread_specific<Local> locals(
     [&] { return Local{ PrimaryCaster(frame, hits), {}, {} }; });
-  forEachTile(lattice.columns(), lattice.rows(), locals,
+  const PixelBounds bounds = settings.bounds.within(camera.width, camera.height);
+  forEachTile(lattice.samplesWithin(bounds), locals,
     [&](Local& local, const TileSpan& columns, const TileSpan& rows) {
       forEachInBlocks(columns.count, rows.count, [&](int x, int y) {
         local.pixels.push_back(lattice.pixel(columns.first + x, rows.first + y));
@@ -192,7 +199,7 @@ RayCounters castPrimaryRays(const Snapshot& snapshot, const Structure& structure
     });
   if (settings.interleave > 1)
   {
-    forEachTile(camera.width, camera.height, locals,
+    forEachTile(bounds, locals,
       [&](Local& local, const TileSpan& columns, const TileSpan& rows) {
         forEachInBlocks(columns.count, rows.count, [&](int x, int y) {
           const int column = columns.first + x, row = rows.first + y;

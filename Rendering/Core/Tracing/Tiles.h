@@ -14,12 +14,13 @@ constexpr int kTile = 32;
 // Pixels along a side of the blocks whose rays are neighbours in a stream: 16 rays, one packet.
 constexpr int kBlock = 4;
 
-// The range of samples of one tile along one axis.
+// The range of samples of one tile along one axis, of those in [begin, end). The grid of tiles is that
+// of the whole picture whatever the range.
 struct TileSpan
 {
-  TileSpan(int tile, int samples)
-    : first(tile * kTile)
-    , count(std::min(kTile, samples - tile * kTile))
+  TileSpan(int tile, int begin, int end)
+    : first(std::max(tile * kTile, begin))
+    , count(std::min((tile + 1) * kTile, end) - first)
   {
   }
   int first;

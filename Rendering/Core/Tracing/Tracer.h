@@ -4,6 +4,7 @@
 // and in a mirror.
 #pragma once
 
+#include "Rendering/Core/PixelBounds.h"
 #include "Rendering/Core/Shading/ShadowLookup.h"
 #include "Rendering/Core/Snapshot.h"
 #include "Rendering/Core/Structures/Structure.h"
@@ -32,6 +33,11 @@ struct TracerSettings
   // Between samples that saw different things the pixels are traced; otherwise the paper's plain
   // interpolation. See Interleaving.h.
   bool interleaveErrorControl = true;
+  // What is traced; the other pixels are as if nothing was hit. Multisampling and interleaving look
+  // at neighbours: near the bounds their result is that of the whole picture from dependsOn() pixels
+  // inwards.
+  PixelBounds bounds;
+  int dependsOn() const { return pixelsAround(this->multisampling, this->interleave); }
 };
 
 // Rays by class, for the statistics: how many were asked for and how many had to be traced;
@@ -78,9 +84,9 @@ struct PrimaryHits
   std::vector<double> clipDepths;   // z / w in OpenGL's clip space, -1 near to 1 far; 1: no hit
 };
 
-// Primary visibility by rays through the pixels' centres: the nearest triangle, between the near and
-// the far plane, of a part that the camera sees, on a side that is not culled. Of the settings only
-// the interleaving counts: a pixel between the samples shows what the nearest sample shows; with error
+// Primary visibility by rays through the centres of the pixels within the settings' bounds: the nearest triangle, between the near and
+// the far plane, of a part that the camera sees, on a side that is not culled; the other pixels hit
+// nothing. Of the other settings only the interleaving counts: a pixel between the samples shows what the nearest sample shows; with error
 // control only where the samples around it show one triangle or nothing, elsewhere its ray is traced.
 RayCounters castPrimaryRays(const Snapshot& snapshot, const Structure& structure,
   const TracerSettings& settings, PrimaryHits& hits);

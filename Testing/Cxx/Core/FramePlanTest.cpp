@@ -26,6 +26,7 @@ struct Frame
   {
     facts.triangles = 100;
     facts.anyPartInView = facts.mirrorInView = facts.anyCaster = true;
+    facts.partInView = { true, false };
     facts.lightCanCast = { true, true };
     changes.first = changes.camera = changes.geometry = changes.transforms = false;
     changes.materials = changes.culling = changes.lightColors = changes.background = false;
@@ -112,6 +113,12 @@ TEST(FramePlan, RunsWhatAChangeNeeds)
     { "visibility setting", "VPRYB", [](Frame& f) { f.settingsChanges.visibility = true; } },
     { "shadow setting", "PYB", [](Frame& f) { f.settingsChanges.shading = true; } },
     { "depth setting", "YB", [](Frame& f) { f.settingsChanges.secondary = true; } },
+    { "pixel bounds", "VPRYB", [](Frame& f) { f.settingsChanges.bounds = true; } },
+    { "pixel bounds, no mirror in them", "VPB",
+      [](Frame& f) {
+        f.settingsChanges.bounds = true;
+        f.facts.mirrorInView = false;
+      } },
     { "no upload yet", "UB", [](Frame& f) { f.caches.geometryUploaded = false; } },
     { "no map yet", "0PB", [](Frame& f) { f.caches.shadowMaps[0] = false; } },
     { "caches of fewer lights", "1PB", [](Frame& f) { f.caches.shadowMaps.resize(1); } },
@@ -276,6 +283,7 @@ TEST(FramePlan, CPUShadingTracesAllAtOnce)
     { "light moved", "1PHB", "PB", "PB", [](Frame& f) { f.changes.lightMoved[1] = true; } },
     { "background", "PB", "PB", "PB", [](Frame& f) { f.changes.background = true; } },
     { "depth setting", "PB", "PB", "PB", [](Frame& f) { f.settingsChanges.secondary = true; } },
+    { "pixel bounds", "VPRB", "VPRB", "VPB", [](Frame& f) { f.settingsChanges.bounds = true; } },
     { "maps on the GPU only", "B", "B", "B",
       [](Frame& f) { f.caches.hostShadowMaps = false; } },
     { "nothing in view", "", "", "", [](Frame& f) { f.facts.anyPartInView = false; } },
@@ -385,6 +393,7 @@ TEST(FramePlan, WhatForbidsPipelining)
     [](Frame& f) { f.changes.geometry = true; },
     [](Frame& f) { f.changes.first = true; },
     [](Frame& f) { f.caches.previousPicture = false; },
+    [](Frame& f) { f.settingsChanges.bounds = true; },
     [](Frame& f) { f.facts.anyPartInView = f.facts.mirrorInView = false; },
   };
   std::set<std::string> reasons;
@@ -402,7 +411,7 @@ TEST(FramePlan, WhatForbidsPipelining)
       cachesAfter(plan, frame.settings, frame.settingsChanges, frame.changes, frame.caches)
         .tracing);
   }
-  EXPECT_GE(reasons.size(), 9u);
+  EXPECT_GE(reasons.size(), 10u);
 }
 
 TEST(FramePlan, MapsThatNobodyReadBackAreNotOnTheHost)
@@ -462,6 +471,35 @@ TEST(FramePlan, SkippedStagesGoStale)
   EXPECT_EQ(running(frame.plan()), "B");
 }
 
+TEST(FramePlan, RasterisesThePartsInView)
+{
+  Frame frame;
+  EXPECT_TRUE(frame.plan().rasterised.empty()) << "nothing changed";
+  frame.changes.camera = true;
+  EXPECT_EQ(frame.plan().rasterised, std::vector<bool>({ true, false }));
+  frame.settings.visibility = Visibility::RayCasting;
+  EXPECT_TRUE(frame.plan().rasterised.empty()) << "rays are cast";
+}
+
+// Bounds that show nothing run no stage; what was in the pictures is gone all the same.
+TEST(FramePlan, BoundsThatShowNothingOutdateThePictures)
+{
+  Frame frame;
+  frame.facts.anyPartInView = frame.facts.mirrorInView = false;
+  frame.settingsChanges.bounds = true;
+  const FramePlan plan = frame.plan();
+  EXPECT_EQ(running(plan), "");
+  frame.caches =
+    cachesAfter(plan, frame.settings, frame.settingsChanges, frame.changes, frame.caches);
+  EXPECT_FALSE(frame.caches.visibility || frame.caches.hostIds || frame.caches.primaryImage ||
+    frame.caches.secondaryImage || frame.caches.previousPicture);
+  EXPECT_TRUE(frame.caches.geometryUploaded && frame.caches.structure);
+  EXPECT_EQ(frame.caches.shadowMaps, std::vector<bool>({ true, true }));
+  frame.settingsChanges.bounds = false;
+  frame.facts.anyPartInView = frame.facts.mirrorInView = true;
+  EXPECT_EQ(running(frame.plan()), "VPRYB");
+}
+
 TEST(FramePlan, ShadowMapsGoStaleWhileShadowsAreOff)
 {
   Frame frame;
@@ -482,7 +520,8 @@ TEST(SettingsChanges, NameWhatTheyOutdate)
     change(now);
     const SettingsChanges c = compareSettings(before, now);
     return std::string(c.visibility ? "V" : "") + (c.shading ? "S" : "") +
-      (c.secondary ? "R" : "") + (c.structure ? "T" : "") + (c.sampling ? "I" : "");
+      (c.secondary ? "R" : "") + (c.structure ? "T" : "") + (c.sampling ? "I" : "") +
+      (c.bounds ? "B" : "");
   };
   const auto compare = [&](const std::function<void(Settings&)>& change) {
     return compareFrom(Settings(), change);
@@ -514,6 +553,9 @@ TEST(SettingsChanges, NameWhatTheyOutdate)
   Settings direct;
   direct.visibility = Visibility::DirectRendering;
   EXPECT_EQ(compareFrom(direct, lazy), "");
+  EXPECT_EQ(compare([](Settings& s) { s.bounds.x0 = 7; }), "B");
+  EXPECT_EQ(compare([](Settings& s) { s.bounds.y1 = 7; }), "B");
+  EXPECT_EQ(compare([](Settings& s) { s.tracedBounds.y1 = 7; }), "B");
 }
 
 TEST(GatherFacts, SeesWhatIsInTheFrustum)

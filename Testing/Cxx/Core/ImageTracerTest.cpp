@@ -140,6 +140,123 @@ TEST(ImageTracer, IsTheSameForAnyBandsAndThreads)
   }
 }
 
+// Tiles that cut those of the tracer at will: put together they are the picture and its rays, and no
+// tile writes a pixel of another.
+TEST(ImageTracer, TracesWhatLiesWithinTheBounds)
+{
+  const int width = 150, height = 101;
+  const Balls balls(width, height);
+  const int columns[] = { 0, 1, 40, 97, width }, rows[] = { 0, 33, 64, height };
+  for (const Wanted wanted : { Wanted::Everything, Wanted::SecondaryOnly })
+  {
+    TracerSettings settings;
+    SecondaryImage whole;
+    const SecondaryResult expected = balls.trace(settings, wanted, whole, height);
+    const glm::vec4 nothing(0.0f, 0.0f, 0.0f, wanted == Wanted::Everything ? 0.0f : 1.0f);
+    SecondaryImage together = whole;
+    std::fill(together.pixels.begin(), together.pixels.end(), glm::vec4(-1.0f));
+    PrimaryHits hits = balls.hits;
+    std::fill(hits.ids.begin(), hits.ids.end(), 0);
+    SecondaryResult sum;
+    for (int tile = 0; tile < 12; ++tile)
+    {
+      const PixelBounds b{ columns[tile % 4], columns[tile % 4 + 1], rows[tile / 4],
+        rows[tile / 4 + 1] };
+      settings.bounds = b;
+      SecondaryImage image;
+      sum += balls.trace(settings, wanted, image, 20);
+      PrimaryHits found;
+      sum.rays += castPrimaryRays(balls.scene, balls.structure, settings, found);
+      for (int pixel = 0; pixel < width * height; ++pixel)
+      {
+        const int x = pixel % width, y = pixel / width;
+        const bool inside = x >= b.x0 && x < b.x1 && y >= b.y0 && y < b.y1;
+        if (inside)
+        {
+          together.pixels[pixel] = image.pixels[pixel];
+          hits.ids[pixel] = found.ids[pixel];
+          hits.clipDepths[pixel] = found.clipDepths[pixel];
+        }
+        else
+        {
+          ASSERT_EQ(image.pixels[pixel], nothing) << pixel;
+          ASSERT_EQ(found.ids[pixel], 0u) << pixel;
+          ASSERT_EQ(found.clipDepths[pixel], 1.0) << pixel;
+        }
+      }
+    }
+    expectSamePicture(together, whole);
+    EXPECT_EQ(hits.ids, balls.hits.ids);
+    EXPECT_EQ(hits.clipDepths, balls.hits.clipDepths);
+    EXPECT_EQ(sum.pixels, expected.pixels);
+    EXPECT_EQ(sum.rays.primary.asked, std::uint64_t(width * height));
+    expectSameCounts(sum.rays.reflection, expected.rays.reflection);
+    expectSameCounts(sum.rays.refraction, expected.rays.refraction);
+    expectSameCounts(sum.rays.shadow, expected.rays.shadow);
+  }
+}
+
+// With a margin of what a pixel depends on, repairs and interpolation give a tile the pixels of the whole
+// picture. Every eleventh id is a wrong one, so that there is something to repair.
+TEST(ImageTracer, LooksNoFartherThanItSays)
+{
+  const int width = 150, height = 101;
+  Balls balls(width, height);
+  const std::vector<std::uint32_t> right = balls.hits.ids;
+  std::vector<std::uint32_t> wrong = right;
+  for (std::size_t i = 0; i < right.size(); i += 11)
+  {
+    wrong[i] = right[(i + 5 * width + 5) % right.size()];
+  }
+  const PixelBounds tiles[] = { { 0, 40, 0, 33 }, { 40, 41, 0, 101 }, { 97, 150, 33, 64 },
+    { 50, 90, 60, 101 }, { 149, 150, 100, 101 } };
+  for (const Multisampling mode : { Multisampling::Off, Multisampling::Clamp,
+         Multisampling::Lazy3x3, Multisampling::Full3x3, Multisampling::Lazy5x5,
+         Multisampling::Full5x5 })
+  {
+    for (const int interleave : { 1, 3, 7, -7 }) // negative: without error control
+    {
+      TracerSettings settings;
+      settings.multisampling = mode;
+      settings.interleave = std::abs(interleave);
+      settings.interleaveErrorControl = interleave > 0;
+      PrimaryHits cast;
+      castPrimaryRays(balls.scene, balls.structure, settings, cast);
+      for (const Wanted wanted : { Wanted::Everything, Wanted::SecondaryOnly })
+      {
+        settings.bounds = PixelBounds();
+        SecondaryImage whole, part;
+        balls.hits.ids = wrong;
+        balls.trace(settings, wanted, whole, height);
+        for (const PixelBounds& b : tiles)
+        {
+          settings.bounds = b.grownBy(settings.dependsOn());
+          const PixelBounds known = settings.bounds.within(width, height);
+          for (int pixel = 0; pixel < width * height; ++pixel)
+          {
+            const int x = pixel % width, y = pixel / width;
+            const bool drawn = x >= known.x0 && x < known.x1 && y >= known.y0 && y < known.y1;
+            balls.hits.ids[pixel] = drawn ? wrong[pixel] : 0;
+          }
+          balls.trace(settings, wanted, part, 16);
+          PrimaryHits found;
+          castPrimaryRays(balls.scene, balls.structure, settings, found);
+          for (int y = b.y0; y < b.y1; ++y)
+          {
+            for (int x = b.x0; x < b.x1; ++x)
+            {
+              const int pixel = y * width + x;
+              ASSERT_EQ(part.pixels[pixel], whole.pixels[pixel])
+                << int(mode) << " " << interleave << " " << x << " " << y;
+              ASSERT_EQ(found.ids[pixel], cast.ids[pixel]) << interleave << " " << x << " " << y;
+            }
+          }
+        }
+      }
+    }
+  }
+}
+
 TEST(ImageTracer, MayBeGivenUpHalfWay)
 {
   const Balls balls(150, 101);
