@@ -4,6 +4,8 @@ import os
 import pathlib
 import sys
 
+from vtkmodules.util.numpy_support import numpy_to_vtk
+from vtkmodules.vtkCommonDataModel import vtkImageData
 from vtkmodules.vtkIOImage import vtkPNGWriter
 from vtkmodules.vtkRenderingCore import vtkRenderWindow, vtkWindowToImageFilter
 
@@ -28,6 +30,18 @@ def save(window, path):
     writer.SetInputConnection(grab.GetOutputPort())
     writer.Write()
     return path
+
+
+def save_pixels(pixels, path):
+    """Writes an array of colours, uint8 (height, width, 3) with row 0 at the bottom, as PNG."""
+    height, width, _ = pixels.shape
+    image = vtkImageData()
+    image.SetDimensions(width, height, 1)
+    image.GetPointData().SetScalars(numpy_to_vtk(pixels.reshape(-1, 3), deep=True))
+    writer = vtkPNGWriter()
+    writer.SetFileName(str(path))
+    writer.SetInputData(image)
+    writer.Write()
 
 
 def output_path(default):
