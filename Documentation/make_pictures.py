@@ -365,6 +365,11 @@ def visibility():
          (colors, "|(u, v) - ItemBuffer|: 1e-7 blue ... 1e-3 yellow"))
 
 
+def pixel_bounds():
+    pair("pixel_bounds", lambda: stage(floor(), knot()),
+         ("everything", {}), ("PixelBounds 200 600 150 450 of 800 x 600", {"PixelBounds": (200, 600, 150, 450)}))
+
+
 def coloured(values, colors, low, high):
     at = (np.clip(values, low, high) - low) / (high - low) * (len(colors) - 1)
     channels = [np.interp(at, range(len(colors)), [c[i] for c in colors]) for i in range(3)]
@@ -500,8 +505,8 @@ def interleave_error_control():
 
 
 PICTURES = [before_after, shadow_mode, shadow_map_resolution, visibility, reflections, refractions,
-            maximum_depth, multisampling, interleave, interleave_error_control, reflectance, glass,
-            buffers, object_intersection_buffer, examples]
+            maximum_depth, multisampling, interleave, interleave_error_control, pixel_bounds,
+            reflectance, glass, buffers, object_intersection_buffer, examples]
 
 
 def main():
