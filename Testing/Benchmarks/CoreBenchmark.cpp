@@ -331,7 +331,7 @@ void printRays(const Fastest& fastest)
 {
   std::printf("\nrays, one thread, millions a second\n%-8s %12s %12s %12s %10s %10s %10s   per ray: %8s %8s %8s %8s\n", "rays",
     "Embree", "exact Embree", "kd-tree", "kd/Embree", "kd/exact", "ex./Embree", "steps", "leaves",
-    "tests", "exact");
+    "blocks", "exact");
   for (const char* kind : kKinds)
   {
     if (fastest.seconds(std::string("KdTreeStructure/") + kind) == 0.0)
@@ -352,7 +352,7 @@ void printRays(const Fastest& fastest)
     const double count = double(rays.size());
     std::printf("%-8s %12.2f %12.2f %12.2f %10.2f %10.2f %10.2f %18.1f %8.1f %8.1f %8.2f\n", kind,
       native, exact, tree, tree / native, tree / exact, exact / native, counters.steps / count,
-      counters.leaves / count, counters.triangleTests / count, counters.candidates / count);
+      counters.leaves / count, counters.blockTests / count, counters.candidates / count);
   }
 }
 

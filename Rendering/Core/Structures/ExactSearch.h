@@ -4,14 +4,17 @@
 
 #include "Rendering/Core/Geometry/TriangleTest.h"
 #include "Rendering/Core/Structures/Structure.h"
+#include "Rendering/Core/Structures/TraversalRay.h"
+
+#include <cmath>
+#include <optional>
 
 namespace hrt
 {
 
-// A geometry as it stands in the scene.
-struct PlacedGeometry
+// A geometry's triangles as they stand in the scene.
+struct PlacedTriangles
 {
-  const Geometry* geometry = nullptr;
   glm::dmat4 toScene{ 1.0 }; // from the geometry's positions
   TriangleId firstTriangle = 0;
 };
@@ -21,27 +24,46 @@ class ExactSearch
 public:
   explicit ExactSearch(const Ray& ray)
     : TheRay(ray)
-    , Exact(ray.origin, ray.direction)
   {
   }
 
   const Ray& ray() const { return this->TheRay; }
-  bool valid() const { return this->Exact.valid(); }
+  // False when the ray can hit nothing. Compared quietly: NaN must not trap.
+  bool valid() const
+  {
+    return isUsable(this->TheRay.origin, this->TheRay.direction) &&
+      std::isgreater(this->TheRay.tMaximum, 0.0);
+  }
   const Hit& best() const { return this->Best; }
   // Up to here, inclusive, a hit could still be better.
   double end() const { return this->Best.valid() ? this->Best.t : this->TheRay.tMaximum; }
 
-  // True when the ray hits the geometry's triangle, which is then the best hit if it is.
-  bool test(const PlacedGeometry& placed, std::size_t triangle)
+  // Whether the ray leaves from the triangle, which it then does not hit.
+  bool isOrigin(const PlacedTriangles& placed, std::uint32_t triangle) const
   {
-    const TriangleId id = placed.firstTriangle + static_cast<TriangleId>(triangle);
-    TriangleHit hit;
-    if (id == this->TheRay.originTriangle ||
-      !this->Exact.hitsTriangle(sceneCorners(*placed.geometry, placed.toScene, triangle),
-        this->TheRay.tMaximum, hit))
+    return placed.firstTriangle + triangle == this->TheRay.originTriangle;
+  }
+
+  // True when the ray hits the geometry's triangle, which is then the best hit if it is. `positions`: the
+  // triangle's, three.
+  bool test(
+    const PlacedTriangles& placed, std::uint32_t triangle, const glm::vec3 (&positions)[3])
+  {
+    if (this->isOrigin(placed, triangle))
     {
       return false;
     }
+    if (!this->Exact)
+    {
+      this->Exact.emplace(this->TheRay.origin, this->TheRay.direction);
+    }
+    TriangleHit hit;
+    if (!this->Exact->hitsTriangle(
+          sceneCorners(positions, placed.toScene), this->TheRay.tMaximum, hit))
+    {
+      return false;
+    }
+    const TriangleId id = placed.firstTriangle + triangle;
     if (hit.t < this->Best.t || (hit.t == this->Best.t && id < this->Best.triangle))
     {
       this->Best = { id, hit.t, hit.u, hit.v };
@@ -51,7 +73,7 @@ public:
 
 private:
   const Ray& TheRay;
-  ShearedRay Exact;
+  std::optional<ShearedRay> Exact; // made when the first triangle needs it
   Hit Best;
 };
 

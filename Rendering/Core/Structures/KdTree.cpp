@@ -1,4 +1,5 @@
 // What a finished kd-tree tells of itself.
+#include "Rendering/Core/Structures/KdTreeCells.h"
 #include "Rendering/Core/Structures/KdTreeCost.h"
 
 #include <ostream>
@@ -34,6 +35,7 @@ private:
     }
     ++this->Quality.innerNodes;
     this->Quality.expectedInnerVisits += met;
+    this->Quality.cost += met * kdcost::kStep;
     KdBox below = box, above = box;
     below.upper[static_cast<int>(node.axis())] = node.split();
     above.lower[static_cast<int>(node.axis())] = node.split();
@@ -51,6 +53,7 @@ private:
     q.depth = std::max(q.depth, depth);
     q.expectedLeafVisits += met;
     q.expectedTriangleTests += met * leaf.count();
+    q.cost += met * kdcost::testCost(leaf.count());
   }
 
   const KdNode* Nodes;
@@ -58,23 +61,54 @@ private:
   KdTreeQuality& Quality;
 };
 
+// The same over the groups, none of which refers to an earlier one: `met` is the groups' probability.
+void sumGroups(const std::vector<KdCells>& groups, const KdBox& box, KdTreeQuality& quality)
+{
+  const double root = kdcost::halfSurface(box);
+  std::vector<double> met(groups.size(), 1.0);
+  for (std::size_t i = 0; i < groups.size(); ++i)
+  {
+    quality.expectedSteps += met[i];
+    for (int lane = 0; lane < KdCells::kLanes; ++lane)
+    {
+      const KdBox cell = groups[i].box(lane);
+      if (cell.empty())
+      {
+        continue;
+      }
+      const double probability = root > 0.0 ? kdcost::halfSurface(cell) / root : 1.0;
+      if (!groups[i].isLeaf(lane))
+      {
+        met[groups[i].child[lane]] = probability;
+        continue;
+      }
+      quality.expectedLeaves += probability;
+      quality.expectedBlockTests += probability * groups[i].blocks[lane];
+    }
+  }
+}
+
 } // namespace
+
+KdTree::KdTree() = default;
+KdTree::~KdTree() = default;
 
 KdTreeQuality KdTree::quality() const
 {
   KdTreeQuality quality;
   quality.triangles = this->Count;
-  quality.bytes = this->Lines.size() * sizeof(KdNodeLine) +
-    this->References.size() * sizeof(std::uint32_t) +
-    this->Triangles.size() * sizeof(KdTriangle);
+  quality.groups = this->Groups.size();
+  quality.blocks = this->Blocks.size();
+  quality.bytes = this->Nodes.size() * sizeof(KdNode) +
+    this->References.size() * sizeof(std::uint32_t) + this->Groups.size() * sizeof(KdCells) +
+    this->Blocks.size() * sizeof(KdBlock);
   quality.depthLimit = this->DepthLimit;
   quality.milliseconds = this->Milliseconds;
   if (quality.triangles > 0)
   {
     QualitySum(this->nodes(), this->Box, quality);
+    sumGroups(this->Groups, this->Box, quality);
   }
-  quality.cost =
-    kdcost::kStep * quality.expectedInnerVisits + quality.expectedTriangleTests;
   return quality;
 }
 
@@ -83,10 +117,13 @@ std::ostream& operator<<(std::ostream& stream, const KdTreeQuality& q)
   return stream << q.triangles << " triangles, " << q.references << " references, " << q.innerNodes
                 << " inner nodes, " << q.leaves << " leaves (" << q.emptyLeaves
                 << " empty, longest list " << q.longestList << "), depth " << q.depth << " of "
-                << q.depthLimit << ", " << q.bytes << " bytes, built in " << q.milliseconds
+                << q.depthLimit << ", " << q.groups << " groups of cells, " << q.blocks
+                << " blocks, " << q.bytes << " bytes, built in " << q.milliseconds
                 << " ms; expected of a random line: cost " << q.cost << ", "
-                << q.expectedInnerVisits << " steps, " << q.expectedLeafVisits << " leaves, "
-                << q.expectedTriangleTests << " triangle tests";
+                << q.expectedInnerVisits << " inner nodes, " << q.expectedLeafVisits << " leaves, "
+                << q.expectedTriangleTests << " triangles; by groups " << q.expectedSteps
+                << " steps, " << q.expectedLeaves << " leaves, " << q.expectedBlockTests
+                << " block tests";
 }
 
 } // namespace hrt

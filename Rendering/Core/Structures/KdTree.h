@@ -67,14 +67,6 @@ private:
 };
 static_assert(sizeof(KdNode) == 8, "two children must fit a quarter of a cache line");
 
-// Nodes come in cache lines: a line holds a pair of children, the pairs below them and one more, so that
-// a ray on its way down waits for memory every second or third step only.
-struct alignas(64) KdNodeLine
-{
-  static constexpr std::size_t kNodes = 8;
-  KdNode nodes[kNodes];
-};
-
 // Numbers that a build of N triangles may at most use: 30 bits for a node or a list's length.
 inline constexpr std::uint32_t kKdTreeMaximumTriangles = 1u << 30;
 
@@ -91,12 +83,8 @@ struct KdBox
   }
 };
 
-// A triangle as KdTreeTraversal.h tests it: the corners' x, then y, then z. Four numbers are loaded at
-// once; the fourth belongs to the next axis or triangle and is ignored.
-struct KdTriangle
-{
-  float coordinates[9];
-};
+struct KdCells;
+union KdBlock;
 
 // What the tree is worth, by the cost model that built it and by counting. "Expected" numbers are
 // those of a random line through the box that nothing stops: an upper bound of what rays need.
@@ -108,13 +96,20 @@ struct KdTreeQuality
   std::uint64_t emptyLeaves = 0;
   std::uint64_t references = 0; // sum of the leaves' lists
   std::uint64_t longestList = 0;
+  std::uint64_t groups = 0;     // of cells
+  std::uint64_t blocks = 0;     // of triangles
   std::uint64_t bytes = 0;
   int depth = 0;                // of the deepest leaf; the root has depth 0
   int depthLimit = 0;
+  // Of the model, which knows nodes and their cells.
   double expectedInnerVisits = 0.0;
   double expectedLeafVisits = 0.0;
   double expectedTriangleTests = 0.0;
-  double cost = 0.0;            // in units of one triangle test
+  double cost = 0.0;            // in units of one block test
+  // Of the groups, which leave empty space out: what KdCounters counts.
+  double expectedSteps = 0.0;
+  double expectedLeaves = 0.0;
+  double expectedBlockTests = 0.0;
   double milliseconds = 0.0;
 };
 std::ostream& operator<<(std::ostream& stream, const KdTreeQuality& quality);
@@ -138,13 +133,15 @@ public:
   static std::unique_ptr<const KdTree> build(
     const Geometry& geometry, const KdTreeBuildControl& control = {});
 
+  ~KdTree();
+
   const KdBox& box() const { return this->Box; }
-  const KdNode* nodes() const { return this->Lines.front().nodes; } // the root is the first
+  const KdNode* nodes() const { return this->Nodes.data(); } // the root is the first
   // The lists of the leaves: numbers of triangles within the geometry.
   const std::vector<std::uint32_t>& references() const { return this->References; }
-  // The triangle of a place in the lists. A copy for each: a leaf's triangles then lie side by side and
-  // cost one wait for memory, where a list of numbers alone would cost one more and then one each.
-  const KdTriangle& triangle(std::size_t reference) const { return this->Triangles[reference]; }
+  // The same for rays: the root's group is the first; none when there is no triangle.
+  const std::vector<KdCells>& groups() const { return this->Groups; }
+  const std::vector<KdBlock>& blocks() const { return this->Blocks; }
 
   // The largest absolute coordinate, the unit of all error bounds.
   double reach() const { return this->Reach; }
@@ -158,11 +155,12 @@ public:
 
 private:
   friend class KdTreeBuilder;
-  KdTree() = default;
+  KdTree();
 
-  std::vector<KdNodeLine> Lines;
+  std::vector<KdNode> Nodes;
   std::vector<std::uint32_t> References;
-  std::vector<KdTriangle> Triangles; // and one for loading beyond the last
+  std::vector<KdCells> Groups;
+  std::vector<KdBlock> Blocks;
   std::size_t Count = 0;             // triangles of the geometry
   KdBox Box;
   double Reach = 0.0;

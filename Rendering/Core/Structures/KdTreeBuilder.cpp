@@ -1,13 +1,14 @@
-// Builds the kd-tree: the recursion over KdTreeSplit.h, its threads, and the layout of the result.
+// Builds the kd-tree: the recursion over KdTreeSplit.h and its threads.
 //
 // Large cells are split one by one, their two halves as tasks of oneTBB; cells below a fixed number of
 // triangles are finished by one thread without asking the heap. The number is fixed, and the finished
 // pieces are laid out in the order of the tree: so the result depends neither on the number of threads
-// nor on their luck.
+// nor on their luck (KdTreePieces.h).
 #include "Rendering/Core/Geometry/Coordinates.h"
+#include "Rendering/Core/Structures/KdTreeCells.h"
+#include "Rendering/Core/Structures/KdTreePieces.h"
 #include "Rendering/Core/Structures/KdTreeSplit.h"
 
-#include <tbb/blocked_range.h>
 #include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_for.h>
 #include <tbb/parallel_invoke.h>
@@ -29,23 +30,6 @@ namespace
 
 // Below: about a millisecond of work, a thousand times what a task costs.
 constexpr std::uint32_t kTaskTriangles = 2048;
-
-// A finished piece of the tree. Numbers of children and references count from its own start; the root is
-// the first node, and the second is left out to keep pairs at even places.
-struct Piece
-{
-  std::vector<KdNode> nodes;
-  std::vector<std::uint32_t> references;
-};
-
-// The tree of the large cells.
-struct Branch
-{
-  int axis = -1; // -1: a piece, else two branches
-  float plane = 0.0f;
-  std::unique_ptr<Branch> below, above;
-  Piece piece;
-};
 
 } // namespace
 
@@ -83,11 +67,10 @@ private:
   };
 
   OwnedCell rootCell() const;
-  void buildBranch(Branch& branch, OwnedCell cell, double share);
-  void buildPiece(Piece& piece, std::size_t node, const KdCell& cell, KdWorkspace& workspace) const;
-  void makeLeaf(Piece& piece, std::size_t node, const KdCell& cell) const;
-  void layOut(const Branch& root, KdTree& tree) const;
-  void copyTriangles(KdTree& tree) const;
+  void buildBranch(KdBranch& branch, OwnedCell cell, double share);
+  void buildPiece(KdPiece& piece, std::size_t node, const KdCell& cell, KdWorkspace& workspace) const;
+  void makeLeaf(KdPiece& piece, std::size_t node, const KdCell& cell) const;
+  void layOut(const KdBranch& root, KdTree& tree) const;
   // Stays true once it was, whatever becomes of the caller's flag.
   bool aborted() const
   {
@@ -156,7 +139,7 @@ KdTreeBuilder::OwnedCell KdTreeBuilder::rootCell() const
   return cell;
 }
 
-void KdTreeBuilder::buildBranch(Branch& branch, OwnedCell cell, double share)
+void KdTreeBuilder::buildBranch(KdBranch& branch, OwnedCell cell, double share)
 {
   if (this->aborted())
   {
@@ -189,15 +172,15 @@ void KdTreeBuilder::buildBranch(Branch& branch, OwnedCell cell, double share)
   cell.memory.reset();
   branch.axis = split.axis;
   branch.plane = split.plane;
-  branch.below = std::make_unique<Branch>();
-  branch.above = std::make_unique<Branch>();
+  branch.below = std::make_unique<KdBranch>();
+  branch.above = std::make_unique<KdBranch>();
   const double lowerShare = share * split.below / (double(split.below) + split.above);
   tbb::parallel_invoke(
     [&] { this->buildBranch(*branch.below, std::move(below), lowerShare); },
     [&] { this->buildBranch(*branch.above, std::move(above), share - lowerShare); });
 }
 
-void KdTreeBuilder::makeLeaf(Piece& piece, std::size_t node, const KdCell& cell) const
+void KdTreeBuilder::makeLeaf(KdPiece& piece, std::size_t node, const KdCell& cell) const
 {
   const std::size_t first = piece.references.size();
   for (const KdEvent event : cell.events[0])
@@ -208,10 +191,21 @@ void KdTreeBuilder::makeLeaf(Piece& piece, std::size_t node, const KdCell& cell)
     }
   }
   piece.nodes[node] = KdNode::leaf(static_cast<std::uint32_t>(first), cell.triangles);
+  if (cell.triangles == 0)
+  {
+    return;
+  }
+  KdLeaf leaf{ {}, static_cast<std::uint32_t>(first), cell.triangles };
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    leaf.bounds.lower[axis] = positionOf(cell.events[axis].events[0]);
+    leaf.bounds.upper[axis] = positionOf(cell.events[axis].events[cell.events[axis].count - 1]);
+  }
+  piece.leaves.push_back(leaf);
 }
 
 void KdTreeBuilder::buildPiece(
-  Piece& piece, std::size_t node, const KdCell& cell, KdWorkspace& workspace) const
+  KdPiece& piece, std::size_t node, const KdCell& cell, KdWorkspace& workspace) const
 {
   const KdSplit split = cheapestSplit(cell, this->DepthLimit);
   if (split.axis < 0 || this->aborted())
@@ -239,188 +233,12 @@ void KdTreeBuilder::buildPiece(
   workspace.arena.release(mark);
 }
 
-namespace
+void KdTreeBuilder::layOut(const KdBranch& root, KdTree& tree) const
 {
-
-// Where a piece goes in the whole tree.
-struct Place
-{
-  const Piece* piece;
-  std::size_t root;       // its first node
-  std::size_t nodes;      // the others
-  std::size_t references;
-};
-
-// Numbers the nodes of the large cells and the places of the pieces, depth first.
-class Layout
-{
-public:
-  Layout(const Branch& root, std::vector<KdNode>& large)
-    : Large(large)
-  {
-    this->Large.resize(2);
-    this->visit(root, 0);
-    this->Nodes = this->Large.size();
-    for (Place& place : this->Places)
-    {
-      place.nodes = this->Nodes;
-      place.references = this->References;
-      this->Nodes += place.piece->nodes.size() - 2;
-      this->References += place.piece->references.size();
-    }
-  }
-
-  const std::vector<Place>& places() const { return this->Places; }
-  std::size_t nodes() const { return this->Nodes; }
-  std::size_t references() const { return this->References; }
-
-private:
-  void visit(const Branch& branch, std::size_t node)
-  {
-    if (branch.axis < 0)
-    {
-      this->Places.push_back({ &branch.piece, node, 0, 0 });
-      return;
-    }
-    const std::size_t children = this->Large.size();
-    this->Large.resize(children + 2);
-    this->Large[node] =
-      KdNode::inner(branch.axis, branch.plane, static_cast<std::uint32_t>(children));
-    this->visit(*branch.below, children);
-    this->visit(*branch.above, children + 1);
-  }
-
-  std::vector<KdNode>& Large;
-  std::vector<Place> Places;
-  std::size_t Nodes = 0;
-  std::size_t References = 0;
-};
-
-KdNode moved(const KdNode& node, const Place& place)
-{
-  if (node.isLeaf())
-  {
-    return KdNode::leaf(
-      node.first() + static_cast<std::uint32_t>(place.references), node.count());
-  }
-  const std::size_t children = node.children() - 2 + place.nodes;
-  return KdNode::inner(
-    static_cast<int>(node.axis()), node.split(), static_cast<std::uint32_t>(children));
-}
-
-} // namespace
-
-// Rearranges a tree's nodes in cache lines (see KdNodeLine): each line is filled breadth first from the pair
-// where it begins, and what is left below goes to later lines, lower cells first.
-class CacheLines
-{
-public:
-  CacheLines(const std::vector<KdNode>& nodes, std::vector<KdNodeLine>& lines)
-    : From(nodes)
-    , To(lines)
-  {
-    constexpr std::size_t kNodes = KdNodeLine::kNodes;
-    this->To.resize((nodes.size() + kNodes - 1) / kNodes);
-    this->at(0) = nodes[0];
-    this->Next = 2;
-    this->enqueue(0);
-    while (!this->Waiting.empty())
-    {
-      this->Line.assign(1, this->Waiting.back());
-      this->Waiting.pop_back();
-      for (std::size_t i = 0; i < this->Line.size(); ++i)
-      {
-        this->placePair(this->Line[i]);
-        if (this->Next % kNodes == 0)
-        {
-          // Full: the others begin lines of their own, the last one first.
-          this->Waiting.insert(this->Waiting.end(), this->Line.rbegin(),
-            this->Line.rend() - static_cast<std::ptrdiff_t>(i + 1));
-          break;
-        }
-      }
-    }
-  }
-
-private:
-  KdNode& at(std::size_t i)
-  {
-    return this->To[i / KdNodeLine::kNodes].nodes[i % KdNodeLine::kNodes];
-  }
-
-  // The new place of a node whose children have none yet.
-  void enqueue(std::size_t parent)
-  {
-    if (!this->at(parent).isLeaf())
-    {
-      this->Waiting.push_back(static_cast<std::uint32_t>(parent));
-    }
-  }
-
-  // Places the children of a node that has its place; they still name their own children's old places.
-  void placePair(std::uint32_t parent)
-  {
-    KdNode& node = this->at(parent);
-    const std::size_t old = node.children();
-    node = KdNode::inner(
-      static_cast<int>(node.axis()), node.split(), static_cast<std::uint32_t>(this->Next));
-    for (std::size_t side = 0; side < 2; ++side)
-    {
-      this->at(this->Next) = this->From[old + side];
-      if (!this->From[old + side].isLeaf())
-      {
-        this->Line.push_back(static_cast<std::uint32_t>(this->Next));
-      }
-      ++this->Next;
-    }
-  }
-
-  const std::vector<KdNode>& From;
-  std::vector<KdNodeLine>& To;
-  std::size_t Next = 0;
-  std::vector<std::uint32_t> Line;    // parents whose children go to the line at hand
-  std::vector<std::uint32_t> Waiting; // parents whose children begin lines
-};
-
-void KdTreeBuilder::layOut(const Branch& root, KdTree& tree) const
-{
-  std::vector<KdNode> all;
-  const Layout layout(root, all);
-  if (layout.nodes() >= kKdTreeMaximumTriangles ||
-    layout.references() > std::numeric_limits<std::uint32_t>::max())
-  {
-    throw std::length_error("kd-tree: too many nodes or references for 32 bits");
-  }
-  all.resize(layout.nodes());
-  tree.References.resize(layout.references());
-  tbb::parallel_for(std::size_t(0), layout.places().size(), [&](std::size_t i) {
-    const Place& place = layout.places()[i];
-    const std::vector<KdNode>& nodes = place.piece->nodes;
-    all[place.root] = moved(nodes[0], place);
-    std::transform(nodes.begin() + 2, nodes.end(), all.begin() + static_cast<std::ptrdiff_t>(place.nodes),
-      [&](const KdNode& node) { return moved(node, place); });
-    std::copy(place.piece->references.begin(), place.piece->references.end(),
-      tree.References.begin() + static_cast<std::ptrdiff_t>(place.references));
-  });
-  CacheLines(all, tree.Lines);
-}
-
-void KdTreeBuilder::copyTriangles(KdTree& tree) const
-{
-  tree.Triangles.resize(tree.References.size() + 1);
-  const auto copy = [&](const tbb::blocked_range<std::size_t>& range) {
-    for (std::size_t i = range.begin(); i < range.end(); ++i)
-    {
-      const glm::vec3* corners = this->Corners + 3 * std::size_t(tree.References[i]);
-      for (int k = 0; k < 3; ++k)
-      {
-        tree.Triangles[i].coordinates[k] = corners[k].x;
-        tree.Triangles[i].coordinates[3 + k] = corners[k].y;
-        tree.Triangles[i].coordinates[6 + k] = corners[k].z;
-      }
-    }
-  };
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, tree.References.size(), 4096), copy);
+  std::vector<KdLeaf> leaves;
+  layOutPieces(root, tree.Nodes, tree.References, leaves);
+  tbb::parallel_invoke([&] { tree.Groups = groupCells(tree.Nodes, leaves); },
+    [&] { tree.Blocks = copyTriangles(leaves, tree.References, this->Corners); });
 }
 
 std::unique_ptr<const KdTree> KdTreeBuilder::build()
@@ -431,14 +249,13 @@ std::unique_ptr<const KdTree> KdTreeBuilder::build()
   tree->Box = cell.box;
   const glm::vec3 most = glm::max(glm::abs(cell.box.lower), glm::abs(cell.box.upper));
   tree->Reach = cell.triangles ? std::max({ most.x, most.y, most.z }) : 0.0;
-  Branch root;
+  KdBranch root;
   this->buildBranch(root, std::move(cell), 1.0);
   if (this->aborted())
   {
     return nullptr;
   }
   this->layOut(root, *tree);
-  this->copyTriangles(*tree);
   tree->Count = this->Count;
   tree->DepthLimit = this->DepthLimit;
   tree->Milliseconds =

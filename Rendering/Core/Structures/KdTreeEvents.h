@@ -50,8 +50,12 @@ inline float positionOf(KdEvent event) { return fromOrderedBits(std::uint32_t(ev
 inline KdEventKind kindOf(KdEvent event) { return KdEventKind(std::uint32_t(event) >> 30); }
 inline std::uint32_t triangleOf(KdEvent event) { return std::uint32_t(event) & 0x3fffffffu; }
 
-// The least event at a position, and the least one beyond it.
+// The least event at a position, the least start there, and the least event beyond it.
 inline KdEvent firstEventAt(float position) { return KdEvent(orderedBits(position)) << 32; }
+inline KdEvent firstStartAt(float position)
+{
+  return makeEvent(position, KdEventKind::Start, 0);
+}
 inline KdEvent firstEventAfter(float position)
 {
   return (KdEvent(orderedBits(position)) + 1) << 32;

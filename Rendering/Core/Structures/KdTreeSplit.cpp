@@ -31,7 +31,7 @@ void consider(KdSplit& best, double cost, int axis, float plane, bool planarBelo
 
 // The plane sweep of the paper's algorithm 4, one event at a time. Within a group of events at one place
 // the counts are right where it matters - behind the ends, in front of the starts, on either side of the
-// planar ones - and too large elsewhere, which never wins.
+// planar ones - and too large elsewhere, which never wins: the cost grows with each triangle.
 //
 // A plane in the cell's own side would split nothing off, unless triangles lie in it: these then get a
 // flat cell of their own, which a ray passes in no time.
@@ -60,7 +60,7 @@ void sweep(const KdCell& cell, int axis, KdSplit& best)
   {
     ++below;
   }
-  for (; event != end && *event < outside; ++event)
+  while (event != end && *event < outside)
   {
     const KdEventKind kind = kindOf(*event);
     const float plane = positionOf(*event);
@@ -68,11 +68,18 @@ void sweep(const KdCell& cell, int axis, KdSplit& best)
     consider(best, cost(plane, below, above), axis, plane, false, below, above);
     if (kind == KdEventKind::Planar)
     {
-      ++below;
-      --above;
+      // All of them on one side or on the other: in between there may be full blocks on both.
+      const KdEvent next = firstStartAt(plane);
+      for (; event != end && *event < next; ++event)
+      {
+        ++below;
+        --above;
+      }
       consider(best, cost(plane, below, above), axis, plane, true, below, above);
+      continue;
     }
     below += kind == KdEventKind::Start;
+    ++event;
   }
   for (; event != end && kindOf(*event) == KdEventKind::End; ++event)
   {

@@ -1,9 +1,8 @@
-// Implements the two levels over KdTree: what is placed where, and how far rounding can move a ray on the
-// way from the scene's coordinates into a tree's.
+// Implements the two levels over KdTree: which trees there are, and what is placed where.
 #include "Rendering/Core/Structures/KdTreeStructure.h"
 
-#include "Rendering/Core/Structures/ExactSearch.h"
 #include "Rendering/Core/Structures/KdTreeParts.h"
+#include "Rendering/Core/Structures/KdTreeSearch.h"
 
 #include <tbb/task_arena.h>
 
@@ -16,123 +15,14 @@ namespace hrt
 namespace
 {
 
-// Half an ulp of 1.
-constexpr double kRounding = 0x1p-53;
-
-// A geometry's tree. The geometry is kept alive with it: the exact test reads its positions.
-struct TriangleTree
-{
-  std::shared_ptr<const Geometry> geometry;
-  std::unique_ptr<const KdTree> tree;
-};
-
-double largest(const glm::dvec3& v)
-{
-  const glm::dvec3 a = glm::abs(v);
-  return std::max({ a.x, a.y, a.z });
-}
-
-// The largest sum of a row's absolute values: how much the matrix can stretch `largest`.
-double stretch(const glm::dmat3& m)
-{
-  return largest(glm::abs(m[0]) + glm::abs(m[1]) + glm::abs(m[2]));
-}
-
-// A placed tree.
-struct Instance
-{
-  std::shared_ptr<const TriangleTree> triangles;
-  PlacedGeometry placed;
-  glm::dmat3 inverse{ 1.0 };
-  // How far, in the tree's coordinates, rounding can part a ray from its triangles, for each unit of
-  // `sceneReach` and of the ray's origin: see slackOf.
-  double slackPerUnit = 0.0;
-  double sceneReach = 0.0;
-  PartBox box;
-  bool visibleToRays = true;
-  bool castsShadow = true;
-
-  bool operator==(const Instance& o) const
-  {
-    return triangles == o.triangles && placed.toScene == o.placed.toScene &&
-      placed.firstTriangle == o.placed.firstTriangle && visibleToRays == o.visibleToRays &&
-      castsShadow == o.castsShadow;
-  }
-};
-
-// With A the matrix, T its translation, X the computed inverse, R the tree's reach, o the ray's origin,
-// S = |A| R + |T|, D = |o| + S and u half an ulp, the distances that matter, in the tree's coordinates:
-//   corners in the scene, A p + T                                |X| 4 u S
-//   the exact kernel's differences and shear                     |X| 8 u D
-//   the origin here, X (o - T), and the direction over a way D   |X| (4 u + 3 u + 2 d) D
-//   the time at which a plane is met, 3 u of it                  |X| 6 u D
-// where d bounds the relative error of X. From X A = I - E follows |A^-1 - X| <= |E| |A^-1|; E is computed
-// with an error of 4 u |X| |A|, and while |E| <= 1/2, |A^-1| <= 2 |X|. Together below
-// |X| (32 u + 4 (|E| + 4 u |X| |A|)) D. A matrix that is worse gets infinite slack: then every triangle is
-// asked.
-double slackPerUnit(const glm::dmat3& matrix, const glm::dmat3& inverse)
-{
-  const double residual = stretch(glm::dmat3(1.0) - inverse * matrix) +
-    4.0 * kRounding * stretch(inverse) * stretch(matrix);
-  return residual <= 0.5 ? stretch(inverse) * (32.0 * kRounding + 4.0 * residual)
-                         : std::numeric_limits<double>::infinity();
-}
-
-Instance makeInstance(
-  const Part& part, std::shared_ptr<const TriangleTree> triangles, const glm::dvec3& sceneOrigin)
-{
-  Instance instance;
-  instance.placed = { triangles->geometry.get(), positionsToScene(part, sceneOrigin),
-    part.firstTriangle };
-  instance.triangles = std::move(triangles);
-  instance.visibleToRays = part.visibleToRays;
-  instance.castsShadow = part.castsShadow;
-  const glm::dmat4& toScene = instance.placed.toScene;
-  const glm::dmat3 matrix(toScene);
-  instance.inverse = glm::inverse(matrix);
-  instance.slackPerUnit = slackPerUnit(matrix, instance.inverse);
-  const KdTree& tree = *instance.triangles->tree;
-  instance.sceneReach = stretch(matrix) * tree.reach() + largest(glm::dvec3(toScene[3]));
-  const glm::dvec3 lower(tree.box().lower), upper(tree.box().upper);
-  for (int corner = 0; corner < 8; ++corner)
-  {
-    const glm::dvec4 point((corner & 1) ? upper.x : lower.x, (corner & 2) ? upper.y : lower.y,
-      (corner & 4) ? upper.z : lower.z, 1.0);
-    instance.box.include(glm::dvec3(toScene * point));
-  }
-  return instance;
-}
+using kdtree::Instance;
+using kdtree::TriangleTree;
+using Instances = std::vector<Instance>;
 
 bool meetsRays(const Part& part)
 {
   return part.geometry->triangleCount() > 0 && (part.visibleToRays || part.castsShadow);
 }
-
-// The true ray with its direction brought away from both ends of the numbers, so that no plane's time
-// overflows. Powers of two change no digit.
-struct ScaledRay
-{
-  glm::dvec3 origin, direction;
-  double perT = 1.0; // of this ray's parameter
-
-  explicit ScaledRay(const Ray& ray)
-    : origin(ray.origin)
-    , direction(ray.direction)
-  {
-    const double longest = largest(ray.direction);
-    if (!(longest > 1e-100 && longest < 1e100))
-    {
-      const int exponent = std::ilogb(longest);
-      for (int axis = 0; axis < 3; ++axis)
-      {
-        this->direction[axis] = std::scalbn(ray.direction[axis], -exponent);
-      }
-      this->perT = std::scalbn(1.0, std::min(exponent, 1023));
-    }
-  }
-};
-
-using Instances = std::vector<Instance>;
 
 } // namespace
 
@@ -149,10 +39,9 @@ struct KdTreeStructure::Implementation
   std::shared_ptr<const TriangleTree> treeOf(
     const Part& part, Trees& current, StructureReport& report);
 
-  // Hands every triangle that the ray may hit to `test(instance, number)`, which returns the t up to
-  // which the search goes on.
+  // Asks `test` about every triangle that the ray may hit.
   template <class Test, class Counters>
-  void search(const ExactSearch& search, bool Instance::*takesPart, Test test,
+  void search(const ExactSearch& search, bool Instance::*takesPart, Test& test,
     Counters& counters) const;
 
   template <class Counters>
@@ -206,33 +95,20 @@ std::shared_ptr<const TriangleTree> KdTreeStructure::Implementation::treeOf(
 
 template <class Test, class Counters>
 void KdTreeStructure::Implementation::search(const ExactSearch& search,
-  bool Instance::*takesPart, Test test, Counters& counters) const
+  bool Instance::*takesPart, Test& test, Counters& counters) const
 {
   if (!search.valid() || this->instances.empty())
   {
     return;
   }
-  const ScaledRay ray(search.ray());
-  const double originReach = largest(ray.origin);
+  const kdtree::ScaledRay ray(search.ray());
+  const double originReach = kdtree::largest(ray.origin);
   const auto visit = [&](std::size_t i) {
     const Instance& instance = this->instances[i];
-    const double end = search.end() * ray.perT;
-    if (!(instance.*takesPart))
+    if (instance.*takesPart)
     {
-      return end;
+      kdtree::searchInstance(instance, ray, originReach, search, test, counters);
     }
-    const KdTree& tree = *instance.triangles->tree;
-    const glm::dvec3 translation(instance.placed.toScene[3]);
-    const double slack =
-      tree.padding() + instance.slackPerUnit * (originReach + instance.sceneReach);
-    KdRay lower;
-    if (!lower.enter(tree, instance.inverse * (ray.origin - translation),
-          instance.inverse * ray.direction, end, slack))
-    {
-      return end;
-    }
-    lower.traverse(
-      tree, [&](std::uint32_t triangle) { return test(instance, triangle) * ray.perT; }, counters);
     return test.done() ? -1.0 : search.end() * ray.perT;
   };
   if (this->instances.size() == 1)
@@ -240,45 +116,18 @@ void KdTreeStructure::Implementation::search(const ExactSearch& search,
     visit(0);
     return;
   }
-  // As above without a change of coordinates: corners, kernel and planes.
-  const double slack = 32.0 * kRounding * (originReach + this->parts.reach());
+  // As Instance::slack without a change of coordinates: corners, kernel and planes.
+  const double slack = 32.0 * kdtree::kRounding * (originReach + this->parts.reach());
   this->parts.traverse(
     KdSlabs(ray.origin, ray.direction, slack), search.end() * ray.perT, visit);
 }
-
-namespace
-{
-
-struct NearestTest
-{
-  ExactSearch& search;
-  double operator()(const Instance& instance, std::uint32_t triangle)
-  {
-    this->search.test(instance.placed, triangle);
-    return this->search.end();
-  }
-  bool done() const { return false; }
-};
-
-struct AnyTest
-{
-  ExactSearch& search;
-  bool found = false;
-  double operator()(const Instance& instance, std::uint32_t triangle)
-  {
-    this->found = this->search.test(instance.placed, triangle);
-    return this->found ? -1.0 : this->search.end();
-  }
-  bool done() const { return this->found; }
-};
-
-} // namespace
 
 template <class Counters>
 Hit KdTreeStructure::Implementation::nearest(const Ray& ray, Counters& counters) const
 {
   ExactSearch exact(ray);
-  this->search(exact, &Instance::visibleToRays, NearestTest{ exact }, counters);
+  kdtree::NearestTest test{ exact };
+  this->search(exact, &Instance::visibleToRays, test, counters);
   return exact.best();
 }
 
@@ -286,8 +135,9 @@ template <class Counters>
 bool KdTreeStructure::Implementation::any(const Ray& ray, Counters& counters) const
 {
   ExactSearch exact(ray);
-  this->search(exact, &Instance::castsShadow, AnyTest{ exact }, counters);
-  return exact.best().valid();
+  kdtree::AnyTest test{ exact };
+  this->search(exact, &Instance::castsShadow, test, counters);
+  return test.done();
 }
 
 KdTreeStructure::KdTreeStructure(const KdTreeSettings& settings)

@@ -1,23 +1,28 @@
-// One ray through one kd-tree: finds, roughly from near to far, every triangle that the exact kernel
-// might accept, and asks the caller about each once or, rarely, twice.
+// One ray through one kd-tree: finds, from near to far, every triangle that the exact kernel might accept.
 //
 // V. Havran: "Heuristic Ray Shooting Algorithms", PhD thesis, Czech Technical University 2000, appendix
-// C, with one difference: every cell is met as if grown by `slack` on all sides, the bound of all that
-// rounding can do. A plane therefore ends the near child a little behind itself and starts the far one a
-// little before; where both are met both are visited. There is no other epsilon, and no case for rays
-// within a plane, on a plane, or along an axis.
+// C, over groups of cells (KdTreeCells.h), and with one more difference: every cell is met as if grown on
+// all sides by a bound of all that rounding can do. There is no other epsilon, and no case for rays within
+// a plane, on a plane, or along an axis.
+//
+// The cells are met in single precision. Let R be the tree's reach, e = 2^-24, and `slack` the bound of
+// what double precision does to ray and triangles. The ray is followed from where it enters the tree's box,
+// in units such that its direction's longest component is 1.
+//   Its start, at most R away on each axis, is rounded to a float with the slack added: by R e. Cells are
+//   grown by the slack and 4 R e. What is left keeps the ray so far within a cell that it just meets, that a
+//   direction component's reciprocal may be cut off at the largest float: beyond, the ray moves by less
+//   than that over all its way.
+//   A parameter is a difference, a reciprocal and a product off, 3 e of itself; the search's end, below, 2 e.
+//   Of two that are compared the one that must not be too small is made larger by 8 e.
+// So a cell that fails the test is not met by the true ray, nor by any within the slack of it.
 #pragma once
 
 #include "Rendering/Core/Structures/KdTree.h"
-#include "Rendering/Core/Structures/KdTreeSlabs.h"
+#include "Rendering/Core/Structures/KdTreeCells.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
-
-#if defined(__SSE2__)
-#include <emmintrin.h>
-#endif
 
 namespace hrt
 {
@@ -26,242 +31,275 @@ namespace hrt
 struct KdNoCounters
 {
   void step() {}
-  void leaf() {}
-  void triangleTest() {}
+  void leaf(std::uint32_t) {}
+  void blockTest() {}
   void candidate() {}
 };
 struct KdCounters
 {
-  std::uint64_t steps = 0;         // inner nodes
+  std::uint64_t steps = 0;      // groups of cells
   std::uint64_t leaves = 0;
-  std::uint64_t triangleTests = 0; // in single precision
-  std::uint64_t candidates = 0;    // exact tests
+  std::uint64_t blockTests = 0; // up to eight triangles in single precision
+  std::uint64_t candidates = 0; // exact tests
   void step() { ++this->steps; }
-  void leaf() { ++this->leaves; }
-  void triangleTest() { ++this->triangleTests; }
+  void leaf(std::uint32_t blocks) { this->leaves += blocks != 0; }
+  void blockTest() { ++this->blockTests; }
   void candidate() { ++this->candidates; }
 };
 
-// Rejects triangles that a ray misses clearly, in single precision and all three corners at once.
-//
-// It is the exact kernel's test - the ray sheared to the axis of its longest component, then the signs of
-// three edge functions - with a margin for all that differs from exact arithmetic. With R the reach, to
-// which the ray's start is clipped, and e = 2^-24, a sheared corner is off by
-//   2 R e   the start's rounding, sheared,
-//   2 R e   the shear's own rounding, over a depth of at most 2 R,
-//   4 R e   the differences of corner and start, sheared,
-//   6 R e   the product and the last difference, of at most 2 R and 4 R,
-// together 14 R e; `Margin` is 16 R e plus the slack of the traversal. An edge function of corners off by
-// m is off by m (|bx|+|by|+|cx|+|cy|+2m); its own rounding, 2 e (|bx cy| + |by cx|) with |cx| <= 4 R, is
-// below half of that. Twice the sum is the threshold. Whatever overflows gives no rejection.
-class KdTriangleFilter
+HRT_ALWAYS_INLINE int lowestBit(unsigned int bits)
 {
-public:
-  // `start`: a point of the ray in the tree's box.
-  void set(const glm::dvec3& start, const glm::dvec3& direction, double reach, double slack)
-  {
-    const double from[3] = { start.x, start.y, start.z };
-    const double along[3] = { direction.x, direction.y, direction.z };
-    const double x = std::abs(along[0]), y = std::abs(along[1]), z = std::abs(along[2]);
-    const int kz = x >= y ? (x >= z ? 0 : 2) : (y >= z ? 1 : 2);
-    const int kx = kz == 2 ? 0 : kz + 1, ky = kx == 2 ? 0 : kx + 1;
-    const int order[3] = { kx, ky, kz };
-    for (int i = 0; i < 3; ++i)
-    {
-      this->Offset[i] = 3 * order[i];
-      this->Start[i] = static_cast<float>(from[order[i]]);
-      this->Shear[i] = static_cast<float>(along[order[i]] / along[kz]);
-    }
-    this->Margin = static_cast<float>((16.0 * 0x1p-24 * reach + slack) * (1.0 + 0x1p-20));
-  }
-
-  bool rejects(const KdTriangle& triangle) const
-  {
-#if defined(__SSE2__)
-    const __m128 z = this->distance(triangle, 2);
-    const __m128 x =
-      _mm_sub_ps(this->distance(triangle, 0), _mm_mul_ps(_mm_set1_ps(this->Shear[0]), z));
-    const __m128 y =
-      _mm_sub_ps(this->distance(triangle, 1), _mm_mul_ps(_mm_set1_ps(this->Shear[1]), z));
-    const __m128 edge = _mm_sub_ps(_mm_mul_ps(x, nextCorner(y)), _mm_mul_ps(y, nextCorner(x)));
-    const __m128 margin = _mm_set1_ps(this->Margin);
-    const __m128 signs = _mm_set1_ps(-0.0f);
-    const __m128 size =
-      _mm_add_ps(_mm_add_ps(_mm_andnot_ps(signs, x), _mm_andnot_ps(signs, y)), margin);
-    const __m128 threshold =
-      _mm_mul_ps(_mm_add_ps(margin, margin), _mm_add_ps(size, nextCorner(size)));
-    const int above = _mm_movemask_ps(_mm_cmpgt_ps(edge, threshold));
-    const int below = _mm_movemask_ps(_mm_cmplt_ps(edge, _mm_xor_ps(signs, threshold)));
-    return (above & kCorners) != 0 && (below & kCorners) != 0;
+#if defined(__GNUC__)
+  return __builtin_ctz(bits);
 #else
-    float x[3], y[3];
-    for (int i = 0; i < 3; ++i)
-    {
-      const float z = triangle.coordinates[this->Offset[2] + i] - this->Start[2];
-      x[i] = triangle.coordinates[this->Offset[0] + i] - this->Start[0] - this->Shear[0] * z;
-      y[i] = triangle.coordinates[this->Offset[1] + i] - this->Start[1] - this->Shear[1] * z;
-    }
-    bool above = false, below = false;
-    for (int i = 0; i < 3; ++i)
-    {
-      const int j = i == 2 ? 0 : i + 1;
-      const float edge = x[i] * y[j] - y[i] * x[j];
-      const float size = std::abs(x[i]) + std::abs(y[i]) + std::abs(x[j]) + std::abs(y[j]) +
-        2.0f * this->Margin;
-      const float threshold = 2.0f * this->Margin * size;
-      above = above || edge > threshold;
-      below = below || edge < -threshold;
-    }
-    return above && below;
-#endif
-  }
-
-private:
-#if defined(__SSE2__)
-  static constexpr int kCorners = 7; // the fourth number is none of the triangle's
-  __m128 distance(const KdTriangle& triangle, int i) const
+  int i = 0;
+  while (!(bits >> i & 1u))
   {
-    const float* numbers = reinterpret_cast<const float*>(&triangle) + this->Offset[i];
-    return _mm_sub_ps(_mm_loadu_ps(numbers), _mm_set1_ps(this->Start[i]));
+    ++i;
   }
-  static __m128 nextCorner(__m128 v) { return _mm_shuffle_ps(v, v, _MM_SHUFFLE(3, 0, 2, 1)); }
+  return i;
 #endif
-
-  // In the order x, y, z of the sheared ray; the last shear is 1.
-  int Offset[3];
-  float Start[3];
-  float Shear[3];
-  float Margin = 0.0f;
-};
+}
 
 // A ray made ready for one tree, in the tree's coordinates. Its t is that of the ray in the scene: an
 // affine map keeps it.
 class KdRay
 {
 public:
-  // False when the ray misses the tree's box, or the tree is empty. `slack`: how far the tree's triangles
-  // and the ray may lie from where the numbers say. The direction's longest component must be far from
-  // both ends of the numbers.
-  bool enter(const KdTree& tree, const glm::dvec3& origin, const glm::dvec3& direction,
+  enum class Entry
+  {
+    Missed,   // the tree's box, or the tree is empty
+    Entered,
+    Unbounded // numbers too large or too small for the bounds above
+  };
+
+  // `slack`: how far the tree's triangles and the ray may lie from where the numbers say. Only an entered
+  // ray can traverse.
+  Entry enter(const KdTree& tree, const glm::dvec3& origin, const glm::dvec3& direction,
     double tMaximum, double slack)
   {
-    this->Slabs = KdSlabs(origin, direction, slack);
-    this->Start = 0.0;
-    this->End = tMaximum;
-    if (!this->Slabs.meet(tree.box().lower, tree.box().upper, this->Start, this->End))
+    if (tree.groups().empty())
     {
-      return false;
+      return Entry::Missed;
     }
-    this->Filter.set(origin + this->Start * direction, direction, tree.reach(), slack);
-    return true;
+    const glm::dvec3 lengths = glm::abs(direction);
+    this->Scale = std::max({ lengths.x, lengths.y, lengths.z });
+    // Written so that what is not a number is out of bounds.
+    const double sum = lengths.x + lengths.y + lengths.z;
+    if (!(this->Scale >= 1.0 / kLargestScale && sum <= kLargestScale && slack <= kLargestSlack))
+    {
+      return Entry::Unbounded;
+    }
+    // The floor keeps a cell at the origin from vanishing among the smallest floats.
+    const double grown = slack + 0x1p-22 * tree.reach() + 1e-30;
+    const glm::dvec3 along = direction * (1.0 / this->Scale);
+    glm::dvec3 inverse;
+    double start = 0.0, end = tMaximum * this->Scale;
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      inverse[axis] = std::clamp(this->Scale / direction[axis], -kLargestFloat, kLargestFloat);
+      const bool negative = std::signbit(along[axis]);
+      const double lower = tree.box().lower[axis] - grown, upper = tree.box().upper[axis] + grown;
+      start = std::max(start, ((negative ? upper : lower) - origin[axis]) * inverse[axis]);
+      end = std::min(end, ((negative ? lower : upper) - origin[axis]) * inverse[axis]);
+    }
+    if (start > end)
+    {
+      return Entry::Missed;
+    }
+    this->Start = start;
+    this->Last = std::min<double>(end - start, kLargestFloat);
+    this->place(origin + start * along, along, inverse, grown);
+    this->Slack = SieveSlack(tree.reach() + 0x1p24 * slack);
+    return Entry::Entered;
   }
 
-  // Calls candidate(number) for triangles that may be hit. It returns the ray's new end: the search goes
-  // on up to there, inclusive; below zero ends it.
-  template <class Candidate, class Counters>
-  void traverse(const KdTree& tree, Candidate&& candidate, Counters& counters)
+  // Calls candidates(block, sieve's result) for blocks with triangles that may be hit. It returns the t up
+  // to which the search goes on, inclusive; below zero ends it.
+  template <class Candidates, class Counters>
+  HRT_ALWAYS_INLINE void traverse(
+    const KdTree& tree, double tMaximum, Candidates&& candidates, Counters& counters) const
   {
-    struct Entry
+    const KdCells* const groups = tree.groups().data();
+    const Slabs slabs = this->TheSlabs;
+    Stack stack;
+    SieveRay ray(this->Origin, this->Direction, this->endAt(tMaximum));
+    Cell cell{ 0.0f, 0, 0 };
+    do
     {
-      double start, end;
-      std::uint32_t node;
-    };
-    Entry stack[kStackSize];
-    int size = 0;
-    Mailbox mailbox;
-    const KdNode* const nodes = tree.nodes();
-    std::uint32_t index = 0;
-    double start = this->Start, end = this->End;
-    for (;;)
-    {
-      KdNode node = nodes[index];
-      while (!node.isLeaf())
+      while (!(cell.child & KdCells::kLeaf))
       {
         counters.step();
-        const unsigned axis = node.axis();
-        const double farStart = this->Slabs.farStart(axis, node.split());
-        const double nearEnd = this->Slabs.nearEnd(axis, node.split());
-        const std::uint32_t near = node.children() + this->Slabs.negative(axis);
-        // Both conditions are written so that what is not a number visits.
-        if (farStart > end)
+        if (!step(groups[cell.child], slabs, ray.end * kLater, cell, stack))
         {
-          index = near;
+          cell = { 0.0f, KdCells::kLeaf, 0 };
+          break;
         }
-        else if (nearEnd < start)
-        {
-          index = near ^ 1u;
-        }
-        else
-        {
-          stack[size++] = { farStart > start ? farStart : start, end, near ^ 1u };
-          end = nearEnd < end ? nearEnd : end;
-          index = near;
-        }
-        node = nodes[index];
       }
-      counters.leaf();
-      this->testLeaf(tree, node, mailbox, candidate, counters);
-      do
+      counters.leaf(cell.blocks);
+      const KdBlock* const blocks = tree.blocks().data() + (cell.child & ~KdCells::kLeaf);
+      for (std::uint32_t i = 0; i < cell.blocks; ++i)
       {
-        if (size == 0)
+        counters.blockTest();
+        const SieveResult lanes = sieve(blocks[i].triangles, ray, this->Slack);
+        if (lanes.possible != 0)
         {
-          return;
+          const double t = candidates(blocks[i], lanes);
+          if (t < 0.0)
+          {
+            return;
+          }
+          ray.end = this->endAt(t);
         }
-        --size;
-      } while (stack[size].start > this->End);
-      index = stack[size].node;
-      start = stack[size].start;
-      end = std::min(stack[size].end, this->End);
-    }
+      }
+    } while (stack.pop(ray.end * kLater, cell));
   }
 
 private:
-  // One entry a level: see kdcost::kDepthLimitMost.
-  static constexpr int kStackSize = 64;
+  static constexpr double kLargestFloat = std::numeric_limits<float>::max();
+  // Far from where squares, reciprocals and sums of doubles and floats overflow.
+  static constexpr double kLargestScale = 1e150, kLargestSlack = 1e30;
+  static constexpr float kLater = 1.0f + 0x1p-21f;
 
-  // The triangles tested last, by the lowest bits of their numbers: a large triangle lies in many leaves,
-  // and the exact test is worth being spared, other than the filter.
-  // Amanatides and Woo: "A Fast Voxel Traversal Algorithm for Ray Tracing", Eurographics 1987; hashed as
-  // in Mitsuba, so that rays of several threads need no memory per triangle.
-  struct Mailbox
+  // A cell on the ray's way.
+  struct Cell
   {
-    static constexpr std::uint32_t kSlots = 8;
-    std::uint32_t slots[kSlots];
-    Mailbox() { std::fill(slots, slots + kSlots, ~0u); }
-    bool tested(std::uint32_t triangle)
+    float start;
+    std::uint32_t child, blocks; // as in KdCells
+  };
+
+  // The ray as it meets cells. On its own, so that a traversal can keep a copy in registers.
+  struct Slabs
+  {
+    float farOrigin[3], nearOrigin[3]; // of bounds that are grown by moving the ray
+    float inverse[3];
+    int near[3], far[3]; // which of KdCells::bounds the ray meets first and last
+
+    // Which cells the ray meets at parameters up to `end`, and where it enters them.
+    HRT_ALWAYS_INLINE unsigned int meet(
+      const KdCells& cells, float end, float (&starts)[KdCells::kLanes]) const
     {
-      std::uint32_t& slot = this->slots[triangle % kSlots];
-      const bool known = slot == triangle;
-      slot = triangle;
-      return known;
+      constexpr int n = KdCells::kLanes;
+      const float* const nearX = cells.bounds[this->near[0]];
+      const float* const nearY = cells.bounds[this->near[1]];
+      const float* const nearZ = cells.bounds[this->near[2]];
+      const float* const farX = cells.bounds[this->far[0]];
+      const float* const farY = cells.bounds[this->far[1]];
+      const float* const farZ = cells.bounds[this->far[2]];
+      const float fx = this->farOrigin[0], fy = this->farOrigin[1], fz = this->farOrigin[2];
+      const float nx = this->nearOrigin[0], ny = this->nearOrigin[1], nz = this->nearOrigin[2];
+      const float ix = this->inverse[0], iy = this->inverse[1], iz = this->inverse[2];
+      std::int32_t met[n];
+      for (int i = 0; i < n; ++i)
+      {
+        const float x0 = (nearX[i] - fx) * ix, y0 = (nearY[i] - fy) * iy, z0 = (nearZ[i] - fz) * iz;
+        const float x1 = (farX[i] - nx) * ix, y1 = (farY[i] - ny) * iy, z1 = (farZ[i] - nz) * iz;
+        const float startX = x0 > 0.0f ? x0 : 0.0f;
+        const float startY = y0 > startX ? y0 : startX;
+        const float start = z0 > startY ? z0 : startY;
+        const float lastXy = x1 < y1 ? x1 : y1;
+        const float lastXyz = (lastXy < z1 ? lastXy : z1) * kLater;
+        const float last = lastXyz < end ? lastXyz : end;
+        starts[i] = start;
+        met[i] = start > last ? 0 : 1 << i;
+      }
+      return unionOf(met);
     }
   };
 
-  template <class Candidate, class Counters>
-  void testLeaf(const KdTree& tree, const KdNode& leaf, Mailbox& mailbox, Candidate&& candidate,
-    Counters& counters)
+  // The cells to come, the next one on top.
+  class Stack
   {
-    const std::size_t last = std::size_t(leaf.first()) + leaf.count();
-    for (std::size_t i = leaf.first(); i < last; ++i)
+  public:
+    int size() const { return this->Size; }
+
+    // Puts a cell among those above `base` by its start.
+    HRT_ALWAYS_INLINE void insert(int base, const Cell& cell)
     {
-      counters.triangleTest();
-      if (this->Filter.rejects(tree.triangle(i)))
+      int place = this->Size++;
+      for (; place > base && this->Cells[place - 1].start < cell.start; --place)
       {
-        continue;
+        this->Cells[place] = this->Cells[place - 1];
       }
-      const std::uint32_t triangle = tree.references()[i];
-      if (!mailbox.tested(triangle))
+      this->Cells[place] = cell;
+    }
+
+    // False when none starts before the end.
+    HRT_ALWAYS_INLINE bool pop(float end, Cell& cell)
+    {
+      while (this->Size > 0)
       {
-        counters.candidate();
-        this->End = candidate(triangle);
+        cell = this->Cells[--this->Size];
+        if (cell.start <= end)
+        {
+          return true;
+        }
       }
+      return false;
+    }
+
+  private:
+    // A level of groups leaves seven cells at most, and each takes at least one level of the tree.
+    Cell Cells[(KdCells::kLanes - 1) * (kdcost::kDepthLimitMost + 1)];
+    int Size = 0;
+  };
+
+  // The end of the search for a t as a parameter within the tree, rounded outward: two ulps are for the two
+  // roundings.
+  float endAt(double t) const
+  {
+    const double parameter = std::clamp(t * this->Scale - this->Start, 0.0, this->Last);
+    return static_cast<float>(parameter) * (1.0f + 0x1p-22f) + std::numeric_limits<float>::min();
+  }
+
+  void place(const glm::dvec3& start, const glm::dvec3& along, const glm::dvec3& inverse, double grown)
+  {
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      const bool negative = std::signbit(along[axis]);
+      this->Origin[axis] = static_cast<float>(start[axis]);
+      this->Direction[axis] = static_cast<float>(along[axis]);
+      this->TheSlabs.inverse[axis] = static_cast<float>(inverse[axis]);
+      this->TheSlabs.farOrigin[axis] = static_cast<float>(start[axis] + (negative ? -grown : grown));
+      this->TheSlabs.nearOrigin[axis] = static_cast<float>(start[axis] - (negative ? -grown : grown));
+      this->TheSlabs.near[axis] = negative ? 3 + axis : axis;
+      this->TheSlabs.far[axis] = negative ? axis : 3 + axis;
     }
   }
 
-  KdSlabs Slabs;
-  double Start = 0.0;
-  double End = 0.0;
-  KdTriangleFilter Filter;
+  // Goes on to the nearest cell of the group that the ray meets and leaves the others on the stack. False
+  // when it meets none.
+  HRT_ALWAYS_INLINE static bool step(
+    const KdCells& cells, const Slabs& slabs, float end, Cell& next, Stack& stack)
+  {
+    float starts[KdCells::kLanes];
+    unsigned int met = slabs.meet(cells, end, starts);
+    if (met == 0)
+    {
+      return false;
+    }
+    const auto at = [&](int lane) {
+      return Cell{ starts[lane], cells.child[lane], cells.blocks[lane] };
+    };
+    const int base = stack.size();
+    next = at(lowestBit(met));
+    for (met &= met - 1; met != 0; met &= met - 1)
+    {
+      Cell other = at(lowestBit(met));
+      if (other.start < next.start)
+      {
+        std::swap(other, next);
+      }
+      stack.insert(base, other);
+    }
+    return true;
+  }
+
+  float Origin[3], Direction[3];
+  Slabs TheSlabs;
+  double Scale = 1.0;                // parameter per t
+  double Start = 0.0, Last = 0.0;    // parameters of the tree's box, from the true origin and from there
+  SieveSlack Slack;
 };
 
 } // namespace hrt

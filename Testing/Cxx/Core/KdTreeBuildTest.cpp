@@ -3,12 +3,14 @@
 #include "KdTreeScenes.h"
 #include "Rendering/Core/Structures/KdTreeCost.h"
 #include "Rendering/Core/Structures/KdTreeEvents.h"
+#include "Rendering/Core/Structures/KdTreeTraversal.h"
 #include "Testing/Cxx/Reference/NaiveKdTree.h"
 
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
 #include <tbb/task_arena.h>
 
+#include <cstring>
 #include <sstream>
 #include <thread>
 
@@ -109,6 +111,30 @@ bool listedAt(const KdTree& tree, std::size_t index, const glm::dvec3& point, st
     (x >= node.split() - tree.padding() && listedAt(tree, node.children() + 1, point, triangle));
 }
 
+// The same of the groups that rays go through.
+bool blockedAt(const KdTree& tree, std::size_t group, const glm::dvec3& point, std::uint32_t triangle)
+{
+  const KdCells& cells = tree.groups()[group];
+  bool found = false;
+  for (int lane = 0; lane < KdCells::kLanes && !found; ++lane)
+  {
+    const KdBox box = cells.box(lane);
+    const double p = tree.padding();
+    const bool inside = glm::all(glm::greaterThanEqual(point, glm::dvec3(box.lower) - p)) &&
+      glm::all(glm::lessThanEqual(point, glm::dvec3(box.upper) + p));
+    if (inside && !cells.isLeaf(lane))
+    {
+      found = blockedAt(tree, cells.child[lane], point, triangle);
+    }
+    for (std::uint32_t i = 0; inside && cells.isLeaf(lane) && i < cells.blocks[lane]; ++i)
+    {
+      const auto& numbers = tree.blocks()[cells.firstBlock(lane) + i].lanes.number;
+      found = found || std::find(std::begin(numbers), std::end(numbers), triangle) != std::end(numbers);
+    }
+  }
+  return found;
+}
+
 TEST(KdTreeBuild, EveryPointOfATriangleIsInALeafThatListsIt)
 {
   Random random(32);
@@ -130,7 +156,9 @@ TEST(KdTreeBuild, EveryPointOfATriangleIsInALeafThatListsIt)
           v = 1.0 - v;
         }
         const glm::dvec3 a(p[0]), b(p[1]), c(p[2]);
-        lost += !listedAt(*tree, 0, (1.0 - u - v) * a + u * b + v * c, i);
+        const glm::dvec3 point = (1.0 - u - v) * a + u * b + v * c;
+        lost += !listedAt(*tree, 0, point, i);
+        lost += !blockedAt(*tree, 0, point, i);
       }
     }
     EXPECT_EQ(lost, 0);
@@ -185,14 +213,96 @@ TEST(KdTreeBuild, QualityCountsWhatIsThere)
   EXPECT_DOUBLE_EQ(q.expectedInnerVisits, 2.0);
   EXPECT_DOUBLE_EQ(q.expectedLeafVisits, 1.0 + 2.0 * 2.0 / 34.0);
   EXPECT_DOUBLE_EQ(q.expectedTriangleTests, 20.0 * 2.0 / 34.0);
-  EXPECT_DOUBLE_EQ(q.cost, 2.0 * kdcost::kStep + 20.0 * 2.0 / 34.0);
+  EXPECT_DOUBLE_EQ(q.cost,
+    2.0 * kdcost::kStep + 2.0 * kdcost::testCost(10) * 2.0 / 34.0 + kdcost::testCost(0));
+  // The empty cell between the leaves is in no group; ten triangles take two blocks.
+  EXPECT_EQ(q.groups, 1u);
+  EXPECT_EQ(q.blocks, 4u);
+  EXPECT_DOUBLE_EQ(q.expectedSteps, 1.0);
+  EXPECT_DOUBLE_EQ(q.expectedLeaves, 2.0 * 2.0 / 34.0);
+  EXPECT_DOUBLE_EQ(q.expectedBlockTests, 4.0 * 2.0 / 34.0);
   std::ostringstream text;
   text << q;
   EXPECT_NE(text.str().find("20 triangles, 20 references, 2 inner nodes, 3 leaves"), std::string::npos)
     << text.str();
 }
 
+// Every triangle of the lists once, in the blocks of its leaf, bit by bit.
+TEST(KdTreeBuild, BlocksHoldTheListedTriangles)
+{
+  for (const auto& [name, mesh] : scenes::hardMeshes(2000))
+  {
+    SCOPED_TRACE(name);
+    const auto tree = KdTree::build(*mesh);
+    Triangles listed = tree->references(), held;
+    for (const KdBlock& block : tree->blocks())
+    {
+      // Unused lanes, at the end, repeat the last triangle.
+      std::uint32_t before = ~0u;
+      for (int lane = 0; lane < TriangleBlock::kLanes; ++lane)
+      {
+        const std::uint32_t number = block.lanes.number[lane];
+        if (number != before)
+        {
+          held.push_back(number);
+        }
+        before = number;
+        for (int k = 0; k < 9; ++k)
+        {
+          const glm::vec3& p = mesh->positions[3 * std::size_t(number) + std::size_t(k / 3)];
+          ASSERT_EQ(std::memcmp(&block.lanes.corner[k / 3][k % 3][lane], &p[k % 3], 4), 0);
+        }
+      }
+    }
+    std::sort(listed.begin(), listed.end());
+    std::sort(held.begin(), held.end());
+    EXPECT_TRUE(listed == held);
+  }
+}
+
+// Random lines through the box, each met with the probability that the report's expectations rest on.
+TEST(KdTreeBuild, ExpectedVisitsAreWhatLinesTake)
+{
+  const auto mesh = scenes::bumpySphere(20000);
+  const auto tree = KdTree::build(*mesh);
+  const glm::dvec3 lower(tree->box().lower), upper(tree->box().upper);
+  const double radius = 0.5 * glm::length(upper - lower);
+  Random random(33);
+  KdCounters counters;
+  int lines = 0;
+  for (int i = 0; i < 60000; ++i)
+  {
+    // A direction, and a place in the disc that it looks at through the box' middle.
+    const glm::dvec3 direction = random.direction();
+    glm::dvec3 across = glm::cross(direction, random.direction());
+    across = std::sqrt(random(0.0, 1.0)) * radius * glm::normalize(across);
+    const glm::dvec3 origin = 0.5 * (lower + upper) + across - 2.0 * radius * direction;
+    KdRay ray;
+    constexpr double kInfinity = std::numeric_limits<double>::infinity();
+    if (ray.enter(*tree, origin, direction, kInfinity, tree->padding()) == KdRay::Entry::Entered)
+    {
+      ++lines;
+      ray.traverse(
+        *tree, kInfinity, [](const KdBlock&, const SieveResult&) { return kInfinity; }, counters);
+    }
+  }
+  ASSERT_GT(lines, 20000);
+  const KdTreeQuality quality = tree->quality();
+  const auto expectNear = [&](std::uint64_t counted, double expected) {
+    EXPECT_NEAR(double(counted) / lines, expected, 0.02 * expected);
+  };
+  expectNear(counters.steps, quality.expectedSteps);
+  expectNear(counters.leaves, quality.expectedLeaves);
+  expectNear(counters.blockTests, quality.expectedBlockTests);
+}
+
 // --- Threads, progress, abort -----------------------------------------------------------------------
+
+template <class T>
+bool sameBytes(const std::vector<T>& a, const std::vector<T>& b)
+{
+  return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(T)) == 0;
+}
 
 TEST(KdTreeBuild, ThreadsDoNotShow)
 {
@@ -208,6 +318,8 @@ TEST(KdTreeBuild, ThreadsDoNotShow)
     const KdNode* nodes = trees.back()->nodes();
     EXPECT_TRUE(std::equal(nodes, nodes + 2 + quality.innerNodes * 2, trees.front()->nodes()));
     EXPECT_TRUE(trees.back()->references() == trees.front()->references());
+    EXPECT_TRUE(sameBytes(trees.back()->groups(), trees.front()->groups()));
+    EXPECT_TRUE(sameBytes(trees.back()->blocks(), trees.front()->blocks()));
   }
 }
 

@@ -2,6 +2,7 @@
 // v, bit by bit, whatever the mesh, the placement and the ray.
 #include "KdTreeScenes.h"
 #include "Rendering/Core/Structures/EmbreeStructure.h"
+#include "Rendering/Core/Structures/KdTreeSearch.h"
 #include "Rendering/Core/Structures/KdTreeStructure.h"
 
 #include <gtest/gtest.h>
@@ -221,6 +222,58 @@ TEST(KdTreeStructure, EqualsBruteForceWhenRoundingIsCoarse)
   EXPECT_GT(hits, 200);
 }
 
+// Matrices that no inverse undoes: every triangle is asked.
+TEST(KdTreeStructure, EqualsBruteForceWherePartsAreFlattened)
+{
+  for (const double height : { 0.0, 1e-17, 1e-300 })
+  {
+    Snapshot s;
+    scenes::addPart(s, scenes::torus(16, 8, 1.0, 0.4),
+      glm::rotate(glm::dmat4(1.0), 0.5, glm::dvec3(1, 2, 3)) *
+        glm::scale(glm::dmat4(1.0), { 1.0, height, 1.0 }) *
+        glm::rotate(glm::dmat4(1.0), 0.5, glm::dvec3(3, 2, 1)));
+    expectEqualToBruteForce(s, 1000, 100); // a part alone
+    scenes::addPart(s, scenes::sphere(16, 8), glm::translate(glm::dmat4(1.0), { 0.5, 0, 0 }));
+    expectEqualToBruteForce(s, 1000, 100);
+  }
+}
+
+// Machines without wide vectors take the other of two compiled traversals.
+TEST(KdTreeStructure, TheWidthOfVectorsDoesNotShow)
+{
+  Snapshot s;
+  const auto mesh = scenes::torus(80, 40, 1.0, 0.4);
+  scenes::addPart(s, mesh, glm::rotate(glm::dmat4(1.0), 0.5, glm::dvec3(1, 2, 3)));
+  KdTreeStructure structure;
+  structure.update(s);
+  const auto triangles = std::make_shared<kdtree::TriangleTree>();
+  triangles->geometry = mesh;
+  triangles->tree = KdTree::build(*mesh);
+  const kdtree::Instance instance = kdtree::makeInstance(s.parts[0], triangles, s.origin);
+  Random random(13);
+  int hits = 0, wrong = 0;
+  for (int i = 0; i < 3000; ++i)
+  {
+    const Ray ray = scenes::hardRay(s, random, i);
+    const kdtree::ScaledRay scaled(ray);
+    const double reach = kdtree::largest(scaled.origin);
+    KdNoCounters none;
+    for (const bool wide : { false, kdtree::hasWideVectors() })
+    {
+      ExactSearch nearest(ray), any(ray);
+      kdtree::NearestTest nearestTest{ nearest };
+      kdtree::AnyTest anyTest{ any };
+      kdtree::searchInstance(instance, scaled, reach, nearest, nearestTest, none, wide);
+      kdtree::searchInstance(instance, scaled, reach, any, anyTest, none, wide);
+      hits += nearest.best().valid();
+      wrong += !same(nearest.best(), structure.intersect(ray));
+      wrong += anyTest.done() != structure.occluded(ray);
+    }
+  }
+  EXPECT_EQ(wrong, 0);
+  EXPECT_GT(hits, 1000);
+}
+
 TEST(KdTreeStructure, EqualHitsGiveTheSmallestNumber)
 {
   const auto quad = scenes::quad({ -1, -1, 0 }, { 1, -1, 0 }, { 1, 1, 0 }, { -1, 1, 0 });
@@ -376,9 +429,10 @@ TEST(KdTreeStructure, CountersTellWhatARayTook)
   EXPECT_FALSE(tree.occluded(past, miss));
   EXPECT_GE(hit.steps, 1u);
   EXPECT_GE(hit.leaves, 1u);
-  EXPECT_GE(hit.triangleTests, hit.candidates);
+  EXPECT_GE(hit.blockTests, hit.leaves);
+  EXPECT_GE(8 * hit.blockTests, hit.candidates);
   EXPECT_GE(hit.candidates, 1u);
-  EXPECT_EQ(miss.steps + miss.leaves + miss.triangleTests + miss.candidates, 0u);
+  EXPECT_EQ(miss.steps + miss.leaves + miss.blockTests + miss.candidates, 0u);
 }
 
 } // namespace

@@ -75,17 +75,17 @@ void weighPlanes(const Parts& parts, const KdBox& cell, int axis, Split& best)
     return;
   }
   const std::vector<Event> events = sortedEvents(parts, axis);
-  double below = 0, above = double(parts.size());
+  std::uint32_t below = 0, above = std::uint32_t(parts.size());
   for (std::size_t i = 0; i < events.size();)
   {
     const float plane = events[i].position;
-    double ending = 0, planar = 0, starting = 0;
+    std::uint32_t ending = 0, planar = 0, starting = 0;
     for (; i < events.size() && events[i].position == plane; ++i)
     {
       ++(events[i].kind == End ? ending : events[i].kind == Planar ? planar : starting);
     }
     above -= planar + ending;
-    const auto weigh = [&](double l, double r, bool planarBelow) {
+    const auto weigh = [&](std::uint32_t l, std::uint32_t r, bool planarBelow) {
       const double c = cost(plane, l, r);
       if (c < best.cost)
       {
@@ -131,7 +131,7 @@ public:
 private:
   void build(std::size_t node, const Parts& parts, const KdBox& cell, int depth)
   {
-    Split split{ kdcost::leafCost(cell, parts.size()) };
+    Split split{ kdcost::leafCost(cell, std::uint32_t(parts.size())) };
     for (int axis = 0; axis < 3 && depth < this->DepthLimit; ++axis)
     {
       weighPlanes(parts, cell, axis, split);
