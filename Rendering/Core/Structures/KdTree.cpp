@@ -62,7 +62,7 @@ private:
 };
 
 // The same over the groups, none of which refers to an earlier one: `met` is the groups' probability.
-void sumGroups(const std::vector<KdCells>& groups, const KdBox& box, KdTreeQuality& quality)
+void sumGroups(const HugePageVector<KdCells>& groups, const KdBox& box, KdTreeQuality& quality)
 {
   const double root = kdcost::halfSurface(box);
   std::vector<double> met(groups.size(), 1.0);

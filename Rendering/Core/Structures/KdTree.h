@@ -1,14 +1,15 @@
 // The paper's acceleration structure: a kd-tree over the triangles of one geometry, in the
 // coordinates of its positions. Built by the O(N log N) surface area heuristic (KdTreeBuilder.cpp),
-// traversed without an epsilon (KdTreeTraversal.h). It proposes triangles; which of them a ray meets
-// is decided elsewhere, by Geometry/TriangleTest.h.
+// traversed without an epsilon (KdTreeTraversal.h) in a layout made for that (KdTreeCells.h). It proposes
+// triangles; which of them a ray meets is decided elsewhere, by Geometry/TriangleTest.h.
 //
 // What the tree promises. Every point of a triangle lies in, or within `padding` of, the closed cell
-// of a leaf that lists the triangle. A traversal that visits every cell within that distance of the
-// ray therefore misses nothing.
+// of a leaf that lists the triangle, and of the bounds that the leaf has in KdTreeCells.h. A traversal that
+// visits every cell within that distance of the ray therefore misses nothing.
 #pragma once
 
 #include "Rendering/Core/Snapshot.h"
+#include "Rendering/Core/Structures/HugePages.h"
 
 #include <atomic>
 #include <cstdint>
@@ -139,9 +140,9 @@ public:
   const KdNode* nodes() const { return this->Nodes.data(); } // the root is the first
   // The lists of the leaves: numbers of triangles within the geometry.
   const std::vector<std::uint32_t>& references() const { return this->References; }
-  // The same for rays: the root's group is the first; none when there is no triangle.
-  const std::vector<KdCells>& groups() const { return this->Groups; }
-  const std::vector<KdBlock>& blocks() const { return this->Blocks; }
+  // The same as rays go through it: the root's group is the first; none when there is no triangle.
+  const HugePageVector<KdCells>& groups() const { return this->Groups; }
+  const HugePageVector<KdBlock>& blocks() const { return this->Blocks; }
 
   // The largest absolute coordinate, the unit of all error bounds.
   double reach() const { return this->Reach; }
@@ -159,8 +160,8 @@ private:
 
   std::vector<KdNode> Nodes;
   std::vector<std::uint32_t> References;
-  std::vector<KdCells> Groups;
-  std::vector<KdBlock> Blocks;
+  HugePageVector<KdCells> Groups;
+  HugePageVector<KdBlock> Blocks;
   std::size_t Count = 0;             // triangles of the geometry
   KdBox Box;
   double Reach = 0.0;

@@ -39,7 +39,7 @@ public:
     }
   }
 
-  std::vector<KdCells>& groups() { return this->Groups; }
+  HugePageVector<KdCells>& groups() { return this->Groups; }
 
 private:
   // A node's cell without the empty space in it.
@@ -62,7 +62,7 @@ private:
   const std::vector<KdLeaf>& Leaves;
   const std::vector<std::uint32_t> Blocks; // of Leaves
   std::vector<Cell> Fitted;                // by node
-  std::vector<KdCells> Groups;
+  HugePageVector<KdCells> Groups;
   std::uint32_t Next = 0; // of Leaves
 };
 
@@ -180,17 +180,17 @@ void copyLane(KdBlock& block, std::uint32_t lane, std::uint32_t triangle, const 
 
 } // namespace
 
-std::vector<KdCells> groupCells(
+HugePageVector<KdCells> groupCells(
   const std::vector<KdNode>& nodes, const std::vector<KdLeaf>& leaves)
 {
   return std::move(CellGrouping(nodes, leaves).groups());
 }
 
-std::vector<KdBlock> copyTriangles(const std::vector<KdLeaf>& leaves,
+HugePageVector<KdBlock> copyTriangles(const std::vector<KdLeaf>& leaves,
   const std::vector<std::uint32_t>& references, const glm::vec3* positions)
 {
   const std::vector<std::uint32_t> numbers = blockNumbers(leaves);
-  std::vector<KdBlock> blocks(numbers.back());
+  HugePageVector<KdBlock> blocks(numbers.back());
   const auto copy = [&](const tbb::blocked_range<std::size_t>& range) {
     for (std::size_t i = range.begin(); i < range.end(); ++i)
     {

@@ -1,8 +1,8 @@
 // The kd-tree as rays go through it: the same cells and lists as its nodes, eight at a time.
 //
-// A node of KdTree.h decides between two cells. A ray needs dozens of such decisions, and processors guess
-// every second one wrong or wait for memory. Here three levels and more make one group: up to eight cells,
-// met together by vector instructions. Of each cell there are the bounds of the parts of triangles in it,
+// A node of KdTree.h decides between two cells. A ray needs dozens of such decisions; of many a processor
+// guesses the outcome wrong, and for some it waits for memory. Here three levels and more make one group: up
+// to eight cells, met together by vector instructions. Of each cell there are the bounds of the parts of triangles in it,
 // which the builder knows: empty space is not visited, and empty cells are not there. Leaves hold copies of
 // their triangles, eight a block, for the sieve of TriangleBlock.h.
 #pragma once
@@ -56,11 +56,11 @@ struct KdLeaf
 };
 
 // Groups the cells below the first node. `leaves`: those that list triangles, lower cells first.
-std::vector<KdCells> groupCells(
+HugePageVector<KdCells> groupCells(
   const std::vector<KdNode>& nodes, const std::vector<KdLeaf>& leaves);
 
 // Copies the leaves' triangles.
-std::vector<KdBlock> copyTriangles(const std::vector<KdLeaf>& leaves,
+HugePageVector<KdBlock> copyTriangles(const std::vector<KdLeaf>& leaves,
   const std::vector<std::uint32_t>& references, const glm::vec3* positions);
 
 } // namespace hrt

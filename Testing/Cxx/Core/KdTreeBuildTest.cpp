@@ -299,7 +299,7 @@ TEST(KdTreeBuild, ExpectedVisitsAreWhatLinesTake)
 // --- Threads, progress, abort -----------------------------------------------------------------------
 
 template <class T>
-bool sameBytes(const std::vector<T>& a, const std::vector<T>& b)
+bool sameBytes(const HugePageVector<T>& a, const HugePageVector<T>& b)
 {
   return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(T)) == 0;
 }
