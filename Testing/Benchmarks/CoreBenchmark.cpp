@@ -329,7 +329,8 @@ void printGrowth(const Fastest& fastest)
 
 void printRays(const Fastest& fastest)
 {
-  std::printf("\nrays, one thread, millions a second\n%-8s %12s %12s %12s %10s %10s %10s   per ray: %8s %8s %8s %8s\n", "rays",
+  std::printf("\nrays, one thread, millions a second\n"
+              "%-8s %12s %12s %12s %10s %10s %10s   per ray: %8s %8s %8s %8s\n", "rays",
     "Embree", "exact Embree", "kd-tree", "kd/Embree", "kd/exact", "ex./Embree", "steps", "leaves",
     "blocks", "exact");
   for (const char* kind : kKinds)

@@ -20,7 +20,7 @@ double stretch(const glm::dmat3& m)
 //   corners in the scene, A p + T                                |X| 4 u S
 //   the exact kernel's differences and shear                     |X| 8 u D
 //   the origin here, X (o - T), and the direction over a way D   |X| (4 u + 3 u + 2 d) D
-//   the time at which a plane is met, 3 u of it                  |X| 6 u D
+//   where the tree's box is entered, and parameters from there   |X| 6 u D
 // where d bounds the relative error of X. From X A = I - E follows |A^-1 - X| <= |E| |A^-1|; E is computed
 // with an error of 4 u |X| |A|, and while |E| <= 1/2, |A^-1| <= 2 |X|. Together below
 // |X| (32 u + 4 (|E| + 4 u |X| |A|)) D. A matrix that is worse gets infinite slack: then every triangle is

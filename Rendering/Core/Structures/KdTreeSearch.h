@@ -48,8 +48,7 @@ inline bool isHit(ExactSearch& search, const Instance& instance, const KdBlock& 
   return search.test(instance.placed, block.lanes.number[lane], positions);
 }
 
-// Both go through a block's lanes and return the t up to which the search goes on; below
-// zero ends it.
+// Go through the lanes that may be hit and return the t up to which the search goes on; below zero ends it.
 struct NearestTest
 {
   ExactSearch& search;
@@ -93,7 +92,7 @@ struct AnyTest
   bool done() const { return this->found; }
 };
 
-// The ray is one of numbers that KdRay cannot bound: every triangle is asked.
+// For rays and placements whose numbers KdRay cannot bound: every triangle is asked.
 template <class Candidates, class Counters>
 void askAll(const KdTree& tree, Candidates&& candidates, Counters& counters)
 {

@@ -1,19 +1,19 @@
 // One ray through one kd-tree: finds, from near to far, every triangle that the exact kernel might accept.
 //
 // V. Havran: "Heuristic Ray Shooting Algorithms", PhD thesis, Czech Technical University 2000, appendix
-// C, over groups of cells (KdTreeCells.h), and with one more difference: every cell is met as if grown on
-// all sides by a bound of all that rounding can do. There is no other epsilon, and no case for rays within
-// a plane, on a plane, or along an axis.
+// C, with two differences. A step takes a ray to the nearest of up to eight cells (KdTreeCells.h). And every
+// cell is met as if grown on all sides by a bound of all that rounding can do; there is no other epsilon, and
+// no case for rays within a plane, on a plane, or along an axis.
 //
 // The cells are met in single precision. Let R be the tree's reach, e = 2^-24, and `slack` the bound of
 // what double precision does to ray and triangles. The ray is followed from where it enters the tree's box,
 // in units such that its direction's longest component is 1.
-//   Its start, at most R away on each axis, is rounded to a float with the slack added: by R e. Cells are
-//   grown by the slack and 4 R e. What is left keeps the ray so far within a cell that it just meets, that a
-//   direction component's reciprocal may be cut off at the largest float: beyond, the ray moves by less
-//   than that over all its way.
-//   A parameter is a difference, a reciprocal and a product off, 3 e of itself; the search's end, below, 2 e.
-//   Of two that are compared the one that must not be too small is made larger by 8 e.
+//   Cells are grown by the slack and 4 R e, of which the start, at most R away on each axis, takes R e when
+//   it is rounded to a float. Where a direction component's reciprocal is cut off, at the largest float, the
+//   ray moves on that axis by less than 2^-100 R over all its way: to be within the grown cell or not is
+//   then the same from start to end.
+//   A parameter is a difference, a reciprocal and a product off, 3 e of itself; the search's end by 2 e. Of
+//   two that are compared, the one that must not be too small is made larger by 8 e.
 // So a cell that fails the test is not met by the true ray, nor by any within the slack of it.
 #pragma once
 
@@ -110,6 +110,7 @@ public:
     this->Start = start;
     this->Last = std::min<double>(end - start, kLargestFloat);
     this->place(origin + start * along, along, inverse, grown);
+    // The sieve takes its bounds for floats' roundings from a reach: this one's is the slack.
     this->Slack = SieveSlack(tree.reach() + 0x1p24 * slack);
     return Entry::Entered;
   }
@@ -173,19 +174,19 @@ private:
   {
     float farOrigin[3], nearOrigin[3]; // of bounds that are grown by moving the ray
     float inverse[3];
-    int near[3], far[3]; // which of KdCells::bounds the ray meets first and last
+    int first[3], last[3]; // which of KdCells::bounds the ray meets first and last
 
     // Which cells the ray meets at parameters up to `end`, and where it enters them.
     HRT_ALWAYS_INLINE unsigned int meet(
       const KdCells& cells, float end, float (&starts)[KdCells::kLanes]) const
     {
       constexpr int n = KdCells::kLanes;
-      const float* const nearX = cells.bounds[this->near[0]];
-      const float* const nearY = cells.bounds[this->near[1]];
-      const float* const nearZ = cells.bounds[this->near[2]];
-      const float* const farX = cells.bounds[this->far[0]];
-      const float* const farY = cells.bounds[this->far[1]];
-      const float* const farZ = cells.bounds[this->far[2]];
+      const float* const nearX = cells.bounds[this->first[0]];
+      const float* const nearY = cells.bounds[this->first[1]];
+      const float* const nearZ = cells.bounds[this->first[2]];
+      const float* const farX = cells.bounds[this->last[0]];
+      const float* const farY = cells.bounds[this->last[1]];
+      const float* const farZ = cells.bounds[this->last[2]];
       const float fx = this->farOrigin[0], fy = this->farOrigin[1], fz = this->farOrigin[2];
       const float nx = this->nearOrigin[0], ny = this->nearOrigin[1], nz = this->nearOrigin[2];
       const float ix = this->inverse[0], iy = this->inverse[1], iz = this->inverse[2];
@@ -262,8 +263,8 @@ private:
       this->TheSlabs.inverse[axis] = static_cast<float>(inverse[axis]);
       this->TheSlabs.farOrigin[axis] = static_cast<float>(start[axis] + (negative ? -grown : grown));
       this->TheSlabs.nearOrigin[axis] = static_cast<float>(start[axis] - (negative ? -grown : grown));
-      this->TheSlabs.near[axis] = negative ? 3 + axis : axis;
-      this->TheSlabs.far[axis] = negative ? axis : 3 + axis;
+      this->TheSlabs.first[axis] = negative ? 3 + axis : axis;
+      this->TheSlabs.last[axis] = negative ? axis : 3 + axis;
     }
   }
 
@@ -297,8 +298,8 @@ private:
 
   float Origin[3], Direction[3];
   Slabs TheSlabs;
-  double Scale = 1.0;                // parameter per t
-  double Start = 0.0, Last = 0.0;    // parameters of the tree's box, from the true origin and from there
+  double Scale = 1.0;             // parameter per t
+  double Start = 0.0, Last = 0.0; // parameters of the tree's box, from the true origin and from there
   SieveSlack Slack;
 };
 
