@@ -19,7 +19,7 @@ from measure import WARM_UP, device_of, header, model_on_floor, models, timed, w
 from vtkhybrid import vtkHybridBARTImporter, vtkHybridRayTracingPass
 from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkChartsCore import vtkChart, vtkChartXY
-from vtkmodules.vtkCommonCore import vtkFloatArray
+from vtkmodules.vtkCommonCore import vtkFloatArray, vtkObject
 from vtkmodules.vtkCommonDataModel import vtkTable
 from vtkmodules.vtkIOImage import vtkPNGWriter
 from vtkmodules.vtkRenderingContext2D import vtkContextActor
@@ -353,6 +353,9 @@ def main(arguments):
     frames = options.frames or (5 if options.quick else 15)
     curve = 25 if options.quick else 200
     options.folder.mkdir(parents=True, exist_ok=True)
+    # Each of the many passes would tell of the robots' triangles without area, and of multisampling
+    # that the GPU's shading does without.
+    vtkObject.GlobalWarningDisplayOff()
 
     tables = {number: {} for number in TABLES}
     comparison, device, robots = {}, "unknown", robots_file()
