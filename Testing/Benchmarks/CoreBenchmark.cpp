@@ -1,18 +1,19 @@
 // What the kd-tree costs: its build against the number of triangles and against a naive builder, and its
-// rays against Embree - Embree's own single rays over float triangles, and EmbreeStructure, which gives
-// the same exact answers as the tree. One thread unless a name says otherwise.
+// rays against Embree - Embree's own single rays and packets over float triangles, and EmbreeStructure,
+// which gives the same exact answers as the tree. One thread unless a name says otherwise.
 //
 // The machine may be shared and noisy: every benchmark is repeated, the repetitions of all are shuffled,
 // and ratios are taken of the fastest ones, which interference can only slow down.
 #include "KdTreeScenes.h"
-#include "Rendering/Core/Structures/EmbreeShim.h"
 #include "Rendering/Core/Structures/EmbreeStructure.h"
 #include "Rendering/Core/Structures/KdTreeStructure.h"
+#include "Testing/Benchmarks/EmbreeQueries.h"
 #include "Testing/Cxx/Reference/NaiveKdTree.h"
 
 #include <benchmark/benchmark.h>
 #include <tbb/task_arena.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <iostream>
 #include <map>
@@ -114,7 +115,8 @@ void Scene::makeSecondary(const Ray& primary, const glm::dvec3& light)
 
 // --- Embree by itself -------------------------------------------------------------------------------
 
-// Float triangles, the robust flag, one ray a call: the speed to be measured against.
+// Float triangles, the robust flag: the speed to be measured against. Its rays are converted
+// beforehand; the structures are given theirs as the tracer has them.
 class NativeEmbree
 {
 public:
@@ -174,7 +176,48 @@ public:
     return ray.hit.geomID != RTC_INVALID_GEOMETRY_ID;
   }
 
+  static std::vector<RTCRayHit16> packets(const Rays& rays)
+  {
+    std::vector<RTCRayHit16> result((rays.size() + kPacket - 1) / kPacket);
+    for (std::size_t i = 0; i < result.size() * kPacket; ++i)
+    {
+      // The last packet is filled up.
+      const RTCRayHit one = convert(rays[std::min(i, rays.size() - 1)]);
+      RTCRay16& ray = result[i / kPacket].ray;
+      const std::size_t lane = i % kPacket;
+      ray.org_x[lane] = one.ray.org_x;
+      ray.org_y[lane] = one.ray.org_y;
+      ray.org_z[lane] = one.ray.org_z;
+      ray.dir_x[lane] = one.ray.dir_x;
+      ray.dir_y[lane] = one.ray.dir_y;
+      ray.dir_z[lane] = one.ray.dir_z;
+      ray.tnear[lane] = one.ray.tnear;
+      ray.tfar[lane] = one.ray.tfar;
+      ray.mask[lane] = ~0u;
+      result[i / kPacket].hit.geomID[lane] = RTC_INVALID_GEOMETRY_ID;
+    }
+    return result;
+  }
+
+  void trace(RTCRayHit16 packet, bool any) const
+  {
+    alignas(64) int valid[kPacket];
+    std::fill(valid, valid + kPacket, -1);
+    embree::QueryContext context;
+    embree::initialize(context);
+    if (any)
+    {
+      embree::occluded(this->Scene, context, valid, packet.ray);
+    }
+    else
+    {
+      embree::intersect(this->Scene, context, valid, packet);
+    }
+    benchmark::DoNotOptimize(packet);
+  }
+
 private:
+  static constexpr std::size_t kPacket = 16;
   RTCDevice Device;
   RTCScene Scene;
 };
@@ -186,9 +229,15 @@ bool isAny(const std::string& kind)
   return kind == "shadow";
 }
 
-void traceNative(benchmark::State& state, const std::string& kind)
+const NativeEmbree& nativeEmbree()
 {
   static const NativeEmbree native(*Scene::get().mesh);
+  return native;
+}
+
+void traceNative(benchmark::State& state, const std::string& kind)
+{
+  const NativeEmbree& native = nativeEmbree();
   std::vector<RTCRayHit> rays;
   for (const Ray& ray : Scene::get().rays.at(kind))
   {
@@ -217,6 +266,42 @@ void trace(benchmark::State& state, const Structure& structure, const std::strin
       hits += isAny(kind) ? structure.occluded(ray) : structure.intersect(ray).valid();
     }
     benchmark::DoNotOptimize(hits);
+  }
+  state.SetItemsProcessed(state.iterations() * std::int64_t(rays.size()));
+}
+
+void traceNativePackets(benchmark::State& state, const std::string& kind)
+{
+  const NativeEmbree& native = nativeEmbree();
+  const std::vector<RTCRayHit16> packets = NativeEmbree::packets(Scene::get().rays.at(kind));
+  for (auto _ : state)
+  {
+    for (const RTCRayHit16& packet : packets)
+    {
+      native.trace(packet, isAny(kind));
+    }
+  }
+  state.SetItemsProcessed(
+    state.iterations() * std::int64_t(Scene::get().rays.at(kind).size()));
+}
+
+void traceStream(benchmark::State& state, const Structure& structure, const std::string& kind)
+{
+  const Rays& rays = Scene::get().rays.at(kind);
+  std::vector<Hit> hits(rays.size());
+  std::vector<std::uint8_t> occluded(rays.size());
+  for (auto _ : state)
+  {
+    if (isAny(kind))
+    {
+      structure.occluded(rays.data(), occluded.data(), rays.size(), RayOrder::Coherent);
+    }
+    else
+    {
+      structure.intersect(rays.data(), hits.data(), rays.size(), RayOrder::Coherent);
+    }
+    benchmark::DoNotOptimize(hits.data());
+    benchmark::DoNotOptimize(occluded.data());
   }
   state.SetItemsProcessed(state.iterations() * std::int64_t(rays.size()));
 }
@@ -357,6 +442,23 @@ void printRays(const Fastest& fastest)
   }
 }
 
+void printStreams(const Fastest& fastest)
+{
+  std::printf("\nstreams, one thread, millions of rays a second\n%-8s %18s %18s %10s\n", "rays",
+    "Embree, packets", "exact Embree", "ex./Embree");
+  for (const char* kind : kKinds)
+  {
+    const double native = fastest.seconds(std::string("native packets/") + kind);
+    const double exact = fastest.seconds(std::string("EmbreeStructure stream/") + kind);
+    if (native > 0.0 && exact > 0.0)
+    {
+      const double millions = 1e-6 * double(Scene::get().rays.at(kind).size());
+      std::printf("%-8s %18.2f %18.2f %10.2f\n", kind, millions / native, millions / exact,
+        native / exact);
+    }
+  }
+}
+
 void registerAll()
 {
   const Scene& scene = Scene::get();
@@ -377,6 +479,10 @@ void registerAll()
   {
     add(std::string("native Embree/") + kind,
       [kind](benchmark::State& s) { traceNative(s, kind); });
+    add(std::string("native packets/") + kind,
+      [kind](benchmark::State& s) { traceNativePackets(s, kind); });
+    add(std::string("EmbreeStructure stream/") + kind,
+      [&, kind](benchmark::State& s) { traceStream(s, scene.embree, kind); });
     add(std::string("EmbreeStructure/") + kind,
       [&, kind](benchmark::State& s) { trace(s, scene.embree, kind); });
     add(std::string("KdTreeStructure/") + kind,
@@ -410,5 +516,6 @@ int main(int argc, char** argv)
   printBuild(fastest);
   printGrowth(fastest);
   printRays(fastest);
+  printStreams(fastest);
   return 0;
 }

@@ -153,8 +153,8 @@ TEST_P(Determinism, Row18StreamsAndSingleRays)
   EXPECT_EQ(different, 0u);
 }
 
-// Embree chooses its code by the processor; its device can be told to choose another. Those that the
-// processor lacks, it refuses.
+// Embree chooses its code by the processor, and ours goes with it; its device can be told to choose
+// another. Those that the processor lacks, it refuses.
 TEST(InstructionSets, Row18EmbreeByEachOfThem)
 {
   const int size = isFull() ? 400 : 120;

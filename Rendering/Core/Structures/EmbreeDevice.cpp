@@ -1,4 +1,4 @@
-// Implements device and scene: the only calls to Embree that can fail.
+// Implements the device.
 #include "Rendering/Core/Structures/EmbreeDevice.h"
 
 #include <stdexcept>
@@ -82,61 +82,6 @@ void Device::remember(void* self, RTCError, const char* message)
   Device& device = *static_cast<Device*>(self);
   const std::lock_guard<std::mutex> lock(device.Mutex);
   device.Message = message ? message : "";
-}
-
-Scene::Scene(Device& device, const UserGeometry& primitives, Kind kind, const char* doing)
-  : Handle(rtcNewScene(device.handle()))
-  , Primitives(rtcNewGeometry(device.handle(), RTC_GEOMETRY_TYPE_USER))
-{
-  rtcSetSceneFlags(this->Handle, RTC_SCENE_FLAG_ROBUST);
-  if (kind == Kind::Refittable)
-  {
-    // Only scenes of this quality look at the quality that a geometry asks for.
-    rtcSetSceneFlags(
-      this->Handle, static_cast<RTCSceneFlags>(RTC_SCENE_FLAG_ROBUST | RTC_SCENE_FLAG_DYNAMIC));
-    rtcSetSceneBuildQuality(this->Handle, RTC_BUILD_QUALITY_LOW);
-  }
-  rtcSetGeometryUserData(this->Primitives, primitives.data);
-  rtcSetGeometryBoundsFunction(this->Primitives, primitives.bounds, nullptr);
-  rtcSetGeometryIntersectFunction(this->Primitives, primitives.intersect);
-  rtcSetGeometryOccludedFunction(this->Primitives, primitives.occluded);
-  rtcSetGeometryUserPrimitiveCount(this->Primitives, static_cast<unsigned int>(primitives.count));
-  rtcCommitGeometry(this->Primitives);
-  rtcAttachGeometry(this->Handle, this->Primitives);
-  rtcCommitScene(this->Handle);
-  try
-  {
-    device.check(doing);
-  }
-  catch (...)
-  {
-    rtcReleaseGeometry(this->Primitives);
-    rtcReleaseScene(this->Handle);
-    throw;
-  }
-}
-
-Scene::~Scene()
-{
-  rtcReleaseGeometry(this->Primitives);
-  rtcReleaseScene(this->Handle);
-}
-
-void Scene::refit(Device& device)
-{
-  rtcSetGeometryBuildQuality(this->Primitives, RTC_BUILD_QUALITY_REFIT);
-  rtcCommitGeometry(this->Primitives);
-  rtcCommitScene(this->Handle);
-  device.check("refitting a hierarchy");
-}
-
-void Scene::rebuild(Device& device, std::size_t count, const char* doing)
-{
-  rtcSetGeometryBuildQuality(this->Primitives, RTC_BUILD_QUALITY_MEDIUM);
-  rtcSetGeometryUserPrimitiveCount(this->Primitives, static_cast<unsigned int>(count));
-  rtcCommitGeometry(this->Primitives);
-  rtcCommitScene(this->Handle);
-  device.check(doing);
 }
 
 } // namespace embree

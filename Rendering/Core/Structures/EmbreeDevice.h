@@ -1,10 +1,8 @@
-// An Embree device whose errors become exceptions with Embree's own words, and the one kind of
-// scene that the structure builds on it.
+// An Embree device whose errors become exceptions with Embree's own words.
 #pragma once
 
 #include "Rendering/Core/Structures/EmbreeShim.h"
 
-#include <cstddef>
 #include <mutex>
 #include <string>
 
@@ -38,42 +36,6 @@ private:
   bool Wide = false;
   std::mutex Mutex;
   std::string Message;
-};
-
-// A scene with one user geometry of `count` primitives.
-struct UserGeometry
-{
-  void* data = nullptr;
-  std::size_t count = 0;
-  RTCBoundsFunction bounds = nullptr;
-  RTCIntersectFunctionN intersect = nullptr;
-  RTCOccludedFunctionN occluded = nullptr;
-};
-
-class Scene
-{
-public:
-  enum class Kind
-  {
-    Static, // built well, for good
-    Refittable
-  };
-
-  Scene(Device& device, const UserGeometry& primitives, Kind kind, const char* doing);
-  ~Scene();
-  Scene(const Scene&) = delete;
-  Scene& operator=(const Scene&) = delete;
-
-  RTCScene handle() const { return this->Handle; }
-
-  // New bounds for the same primitives; for a refittable scene.
-  void refit(Device& device);
-  // New bounds and perhaps another number of primitives.
-  void rebuild(Device& device, std::size_t count, const char* doing);
-
-private:
-  RTCScene Handle = nullptr;
-  RTCGeometry Primitives = nullptr;
 };
 
 } // namespace embree

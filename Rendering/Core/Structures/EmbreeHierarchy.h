@@ -1,13 +1,14 @@
 // A hierarchy over triangles: the triangles of one geometry, or those of many parts merged into
-// common coordinates. Embree builds and traverses it; its primitives are blocks of up to eight
-// neighbouring triangles (TriangleBlock.h), whose possible hits the exact kernel decides.
+// common coordinates. The leaves of its tree (WideTree.h) are blocks of up to eight neighbouring
+// triangles (TriangleBlock.h), whose possible hits the exact kernel decides.
 #pragma once
 
 #include "Rendering/Core/Structures/EmbreeDevice.h"
 #include "Rendering/Core/Structures/EmbreeSearch.h"
+#include "Rendering/Core/Structures/TriangleBlock.h"
+#include "Rendering/Core/Structures/WideTree.h"
 
 #include <array>
-#include <memory>
 #include <vector>
 
 namespace hrt
@@ -19,7 +20,8 @@ namespace embree
 struct SourceTriangle
 {
   std::array<glm::vec3, 3> corner;
-  Source source;
+  std::uint32_t member = 0;   // the part's number in the hierarchy
+  std::uint32_t triangle = 0; // number in the part's geometry
 };
 
 class Hierarchy
@@ -28,44 +30,53 @@ public:
   // `positions`: the geometries' own, a triangle's corners each, where the hierarchy's coordinates
   // are others and their rounding has to be undone; else empty.
   Hierarchy(Device& device, const std::vector<SourceTriangle>& triangles,
-    const std::vector<std::array<glm::vec3, 3>>& positions, Scene::Kind kind);
+    const std::vector<std::array<glm::vec3, 3>>& positions);
   Hierarchy(const Hierarchy&) = delete;
   Hierarchy& operator=(const Hierarchy&) = delete;
 
-  RTCScene scene() const { return this->Tree->handle(); }
+  const WideTree& tree() const { return this->Tree; }
+  const TriangleBlock& block(std::uint32_t i) const { return this->Blocks[i]; }
+  const SieveSlack& slack() const { return this->Slack; }
   const TraversalBox& box() const { return this->Box; }
   const EntryBox& entry() const { return this->Entry; }
 
   // Moves the triangles of a hierarchy of one geometry to that geometry's new positions. False when
-  // the hierarchy has become so much worse than it was when built that it is better built anew.
-  bool refit(Device& device, const std::vector<glm::vec3>& positions);
+  // it holds not all of them, or has become so much worse than it was when built, that it is better
+  // built anew.
+  bool refit(const std::vector<glm::vec3>& positions);
+
+  // The exact test of the lanes of a block that the sieve has let pass. `nearest`: true when one of
+  // them is the search's best hit now. `any`: true when one is hit by a shadow ray.
+  bool nearest(std::uint32_t block, unsigned int lanes, const Member* members, Search& search) const;
+  bool any(std::uint32_t block, SieveResult lanes, const Member* members, Search& search) const;
+
+  const Member& memberOf(std::size_t block, int lane, const Member* members) const
+  {
+    return members[this->Members.empty() ? 0 : this->Members[block * TriangleBlock::kLanes + lane]];
+  }
+  ExactPositions positionsOf(std::size_t block, int lane) const
+  {
+    constexpr int n = TriangleBlock::kLanes;
+    return this->OwnPositions.empty()
+      ? ExactPositions{ &this->Blocks[block].corner[0][0][lane], 3 * n, n }
+      : ExactPositions{ &this->OwnPositions[block * n + lane][0].x, 3, 1 };
+  }
 
 private:
-  friend struct BlockCallbacks;
-  struct Node // of the tree that the blocks are the leaves of
-  {
-    std::uint32_t child[2]; // a node's number, or ~ the number of a block
-  };
-  struct Builder;
-  struct Lanes;
-
   void setLane(std::size_t block, int lane, const std::array<glm::vec3, 3>& corner);
-  double cost() const;
-  static void boundsOf(const RTCBoundsFunctionArguments* arguments);
+  void fit();
+  bool test(std::size_t block, int lane, const Member& member, Search& search, Hit& hit) const;
 
-  struct alignas(64) BlockSources : std::array<Source, TriangleBlock::kLanes> // a cache line
-  {
-  };
-
+  WideTree Tree;
   std::vector<TriangleBlock> Blocks;
-  std::vector<BlockSources> Sources;
-  std::vector<std::array<glm::vec3, 3>> Positions; // kLanes a block, if not those of the blocks
-  std::vector<Node> Nodes;                         // children before parents
+  // kLanes a block, unless all triangles are of one member; and if they are not those of the blocks.
+  std::vector<std::uint32_t> Members;
+  std::vector<std::array<glm::vec3, 3>> OwnPositions;
   TraversalBox Box;
   EntryBox Entry;
   SieveSlack Slack;
   double CostWhenBuilt = 0.0;
-  std::unique_ptr<Scene> Tree;
+  bool Complete = true; // no triangle was left out
 };
 
 } // namespace embree

@@ -1,5 +1,5 @@
-// Embree 3 and Embree 4 under one spelling: only what the structure over Embree calls. The versions
-// differ in the header's folder, in the name of a query's context and in how it reaches the query.
+// Embree 3 and Embree 4 under one spelling: the versions differ in the header's folder. The builder
+// (WideTree.cpp) is the same in both.
 #pragma once
 
 #if __has_include(<embree4/rtcore.h>)
@@ -7,90 +7,3 @@
 #else
 #include <embree3/rtcore.h>
 #endif
-
-namespace hrt
-{
-namespace embree
-{
-
-// Rays that Embree traverses together at most.
-inline constexpr unsigned int kPacket = 16;
-
-#if RTC_VERSION_MAJOR >= 4
-
-using QueryContext = RTCRayQueryContext;
-
-inline void initialize(QueryContext& context)
-{
-  rtcInitRayQueryContext(&context);
-}
-
-inline void intersect(RTCScene scene, QueryContext& context, RTCRayHit& rayHit)
-{
-  RTCIntersectArguments arguments;
-  rtcInitIntersectArguments(&arguments);
-  arguments.context = &context;
-  rtcIntersect1(scene, &rayHit, &arguments);
-}
-
-inline void occluded(RTCScene scene, QueryContext& context, RTCRay& ray)
-{
-  RTCOccludedArguments arguments;
-  rtcInitOccludedArguments(&arguments);
-  arguments.context = &context;
-  rtcOccluded1(scene, &ray, &arguments);
-}
-
-inline void intersect(RTCScene scene, QueryContext& context, const int* valid, RTCRayHit16& rayHit)
-{
-  RTCIntersectArguments arguments;
-  rtcInitIntersectArguments(&arguments);
-  arguments.context = &context;
-  arguments.flags = RTC_RAY_QUERY_FLAG_COHERENT;
-  rtcIntersect16(valid, scene, &rayHit, &arguments);
-}
-
-inline void occluded(RTCScene scene, QueryContext& context, const int* valid, RTCRay16& ray)
-{
-  RTCOccludedArguments arguments;
-  rtcInitOccludedArguments(&arguments);
-  arguments.context = &context;
-  arguments.flags = RTC_RAY_QUERY_FLAG_COHERENT;
-  rtcOccluded16(valid, scene, &ray, &arguments);
-}
-
-#else
-
-using QueryContext = RTCIntersectContext;
-
-inline void initialize(QueryContext& context)
-{
-  rtcInitIntersectContext(&context);
-}
-
-inline void intersect(RTCScene scene, QueryContext& context, RTCRayHit& rayHit)
-{
-  rtcIntersect1(scene, &context, &rayHit);
-}
-
-inline void occluded(RTCScene scene, QueryContext& context, RTCRay& ray)
-{
-  rtcOccluded1(scene, &context, &ray);
-}
-
-inline void intersect(RTCScene scene, QueryContext& context, const int* valid, RTCRayHit16& rayHit)
-{
-  context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
-  rtcIntersect16(valid, scene, &context, &rayHit);
-}
-
-inline void occluded(RTCScene scene, QueryContext& context, const int* valid, RTCRay16& ray)
-{
-  context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
-  rtcOccluded16(valid, scene, &context, &ray);
-}
-
-#endif
-
-} // namespace embree
-} // namespace hrt

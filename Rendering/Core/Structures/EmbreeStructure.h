@@ -2,12 +2,12 @@
 //
 // Embree's own triangles are tested in single precision and, aimed at vertices of a closed mesh, up
 // to two rays in a hundred slip through even in its robust mode; a filter could reject its wrong
-// hits but never bring back its misses. Triangles are therefore handed to Embree as user geometry,
-// eight neighbours a primitive: it builds and traverses the hierarchy, over boxes grown by a
-// derived bound (TraversalRay.h); a sieve in single precision drops what surely is not hit
-// (TriangleBlock.h); and every triangle that is left is decided by Geometry/TriangleTest.h in
-// double. The result is, bit by bit, that of a loop over all triangles, for any instruction set,
-// packet and grouping.
+// hits but never bring back its misses. Embree therefore builds the hierarchies, and the rest is
+// done here: trees of eight boxes a node, grown by a derived bound (WideTree.h, TraversalRay.h), over
+// blocks of up to eight neighbouring triangles; a sieve in single precision drops what surely is not
+// hit (TriangleBlock.h); and every triangle that is left is decided by the kernel of
+// Geometry/TriangleTest.h in double. The result is, bit by bit, that of a loop over all triangles,
+// for any instruction set, packet and grouping.
 //
 // Which parts share a hierarchy is the policy of Grouping.h. A moved part costs the hierarchy over
 // the parts' boxes only; a mesh that deforms is refitted.

@@ -30,15 +30,19 @@ struct TraversalBox
     return std::max({ most.x, most.y, most.z });
   }
 
-  // How far each box within the hierarchy is grown. With R the reach and e = 2^-24, half an ulp:
-  //   the ray starts on or in the outer box, where rounding moves it by            R e,
-  //   its direction's longest component is 1; rounding turns it, over the length
-  //   of at most 2 R that the ray runs within the box, by                          2 R e / 2,
-  //   a grown face is itself rounded, by about                                     R e,
-  // together 3 R e. The rest of 4 R e is for everything done in double, which is a million times
-  // finer. Embree's robust mode covers the rounding of its own box test. The floor keeps a box at
-  // the origin from vanishing among Embree's smallest numbers.
-  double padding() const { return std::max(0x1p-22 * this->reach(), 1e-30); }
+  // How far each box within the hierarchy is grown, so that one fused multiplication a plane decides
+  // whether a ray meets a box, with no allowance at the node: for the plane at p, p * r - o * r with
+  // r the float next to the reciprocal of the direction's component, o the float origin.
+  // With R the reach and e = 2^-24, half an ulp, a plane is as if moved by
+  //   R e   the rounding of the origin, which lies on or in the outer box,
+  //   R e   that of o * r, which is e |o| in units of r,
+  //   R e   that of p * r where the processor does not fuse,
+  //   R e   that of the grown plane itself.
+  // The parameter is then off by the factors 1 + e of r and of the difference: beside a parameter of
+  // at most 2 R, which is as far as the ray runs within the box, by 4 R e, and |r| >= 1. Together
+  // 8 R e. The rest of 16 R e is for everything done in double, a million times finer, and for
+  // kSteepest. The floor keeps a box at the origin from vanishing among the smallest numbers.
+  double padding() const { return std::max(0x1p-20 * this->reach(), 1e-30); }
 };
 
 // An outer box, grown, as rays meet it.
@@ -55,12 +59,17 @@ struct EntryBox
   }
 };
 
+// Reciprocals of the direction's components end here: its product with the largest coordinate
+// admitted is a finite float, and a ray tilted by 1e-18 is, over 2 R, off by far less than R e.
+inline constexpr double kSteepest = 1e18;
+
 // The ray from where it enters the outer box; parameters count from there, in units such that the
 // direction's longest component is 1 or -1, exactly.
 struct TraversalRay
 {
   glm::vec3 origin;
   glm::vec3 direction;
+  glm::vec3 inverse;  // of the direction, never infinite
   double start = 0.0; // of the box, in the same units from the true ray's origin
   double scale = 1.0; // parameter per t
 
@@ -106,7 +115,7 @@ inline bool enterBox(const EntryBox& box, const glm::dvec3& origin, const glm::d
   const glm::dvec3 along = inUnitsOf(ray.scale, direction);
   // A ray parallel to two faces is before both at minus infinity, or before or behind both: the
   // products say so. Only on a grown face is one no number, and then either answer is right.
-  const glm::dvec3 inverse = 1.0 / along;
+  const glm::dvec3 inverse = ray.scale / direction;
   double enter = 0.0, leave = tMaximum * ray.scale;
   for (int axis = 0; axis < 3; ++axis)
   {
@@ -118,6 +127,7 @@ inline bool enterBox(const EntryBox& box, const glm::dvec3& origin, const glm::d
   ray.start = enter;
   ray.origin = glm::vec3(origin + enter * along);
   ray.direction = glm::vec3(along);
+  ray.inverse = glm::vec3(glm::clamp(inverse, -kSteepest, kSteepest));
   return enter <= leave;
 }
 

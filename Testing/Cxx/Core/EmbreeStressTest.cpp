@@ -73,6 +73,48 @@ TEST(EmbreeStress, NothingLeaksOutOfASphere)
   }
 }
 
+// The same for rays that lie together: sixteen neighbouring corners, and points on the edges between
+// them, from one point and from sixteen that lie as close. Every one must hit, and what single rays do.
+TEST(EmbreeStress, NoPacketLeaksOutOfASphere)
+{
+  for (const glm::dvec3& centre : { glm::dvec3(0.0), glm::dvec3(148376, 1234, -223423) })
+  {
+    Snapshot s;
+    scenes::addPart(s, scenes::sphere(400, 200),
+      glm::scale(glm::translate(glm::dmat4(1.0), centre), glm::dvec3(2.0)));
+    s.origin = centre;
+    EmbreeStructure embree;
+    embree.update(s);
+    Random random(54);
+    int leaks = 0, different = 0;
+    for (int packet = 0; packet < 4000 * intensity(); ++packet)
+    {
+      Ray rays[16];
+      Hit hits[16];
+      std::uint8_t occluded[16];
+      const glm::dvec3 eye = random.inBox(0.5);
+      const double apart = packet % 2 == 0 ? 0.0 : 0.01;
+      const std::size_t first = random.below(s.triangleCount - 16);
+      for (std::size_t i = 0; i < 16; ++i)
+      {
+        const Corners c = checks::cornersOf(s, static_cast<TriangleId>(first + i));
+        const double share = packet % 3 == 0 ? 0.0 : random(0, 1);
+        rays[i].origin = eye + random.inBox(apart);
+        rays[i].direction = c.a + share * (c.b - c.a) - rays[i].origin;
+      }
+      embree.intersect(rays, hits, 16, RayOrder::Coherent);
+      embree.occluded(rays, occluded, 16, RayOrder::Coherent);
+      for (std::size_t i = 0; i < 16; ++i)
+      {
+        leaks += !hits[i].valid() + (occluded[i] == 0);
+        different += !checks::same(hits[i], embree.intersect(rays[i]));
+      }
+    }
+    EXPECT_EQ(leaks, 0);
+    EXPECT_EQ(different, 0);
+  }
+}
+
 // Triangles of 11 x 10 x 0.7 seen from up to 600 at 0.02 to 2 degrees. A ray is aimed at a known
 // point of the plane; whether it meets the triangle is known when that point's weights keep away
 // from zero by more than the aim's own rounding.

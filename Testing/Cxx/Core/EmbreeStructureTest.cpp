@@ -1,4 +1,5 @@
 // The Embree structure against a loop over all triangles: same triangle, same t, u, v, bit by bit.
+#include "Rendering/Core/Structures/EmbreeDevice.h"
 #include "Rendering/Core/Structures/EmbreeStructure.h"
 #include "StructureChecks.h"
 
@@ -213,15 +214,14 @@ TEST(EmbreeStructure, ErrorsAreThrownWithEmbreesWords)
 {
   EXPECT_EQ(
     errorOf([] { EmbreeStructure embree("threads=many"); }), "Embree: no device (unknown error)");
-  // A hierarchy of a kind that does not exist: the device is made, the build fails.
-  EmbreeStructure embree("object_accel=abacus");
-  Snapshot s;
-  scenes::addPart(s, scenes::sphere(16, 8));
-  const std::string error = errorOf([&] { embree.update(s); });
-  EXPECT_NE(error.find("Embree: building a geometry's hierarchy failed"), std::string::npos)
-    << error;
-  EXPECT_NE(error.find("abacus"), std::string::npos) << error;
-  EXPECT_FALSE(embree.intersect(Ray()).valid()); // still usable, as before the update
+  // A geometry of a kind that does not exist.
+  embree::Device device("");
+  const RTCGeometry none = rtcNewGeometry(device.handle(), static_cast<RTCGeometryType>(99));
+  EXPECT_EQ(none, nullptr);
+  const std::string error = errorOf([&] { device.check("making nothing"); });
+  EXPECT_EQ(error.rfind("Embree: making nothing failed (", 0), 0u) << error;
+  EXPECT_NE(error.find("type"), std::string::npos) << error; // Embree's own word
+  EXPECT_EQ(errorOf([&] { device.check("making nothing"); }), "no error"); // said once
 }
 
 } // namespace

@@ -1,0 +1,370 @@
+// Single rays through both levels; packets in EmbreePackets.inl. Included once for each instruction
+// set (EmbreeKernels.cpp), which defines HRT_KERNELS, the namespace, HRT_TARGET, the functions'
+// attribute, and HRT_AVX2.
+
+namespace hrt
+{
+namespace embree
+{
+namespace HRT_KERNELS
+{
+
+#include "Rendering/Core/Structures/EmbreeLanes.inl"
+
+constexpr unsigned int kLanes = TriangleBlock::kLanes;
+static_assert(WideNode::kWidth == kLanes, "a value's lanes are a node's children");
+
+// --- Boxes ------------------------------------------------------------------------------------------
+
+// A ray as the nodes of a tree want it.
+struct NodeRay
+{
+  Floats inverse[3], offset[3]; // offset: the origin times the inverse
+  int nearer[3];                // which of a box' bounds the ray meets first
+
+  HRT_LANES explicit NodeRay(const TraversalRay& ray)
+  {
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      this->inverse[axis] = all(ray.inverse[axis]);
+      this->offset[axis] = all(ray.origin[axis] * ray.inverse[axis]);
+      this->nearer[axis] = std::signbit(ray.inverse[axis]) ? 1 : 0;
+    }
+  }
+
+  // The node's children that the ray meets before `end`, as bits, and where. TraversalBox::padding
+  // has made up for all roundings.
+  HRT_LANES unsigned int meet(const WideNode& node, Floats end, Floats& start) const
+  {
+    const int x = this->nearer[0], y = this->nearer[1], z = this->nearer[2];
+    start = most(most(this->plane(node, 0, x), this->plane(node, 1, y)),
+      most(this->plane(node, 2, z), all(0.0f)));
+    const Floats stop =
+      least(least(this->plane(node, 0, x ^ 1), this->plane(node, 1, y ^ 1)),
+        least(this->plane(node, 2, z ^ 1), end));
+    return lessEqual(start, stop);
+  }
+
+private:
+  HRT_LANES Floats plane(const WideNode& node, int axis, int which) const
+  {
+    return mulSub(load(node.bound[which][axis]), this->inverse[axis], this->offset[axis]);
+  }
+};
+
+// What is still to be visited: the bits of the start, which is not negative, above the number, so
+// that whole numbers are in the order of the starts.
+using Pending = std::uint64_t;
+HRT_LANES Pending pending(float start, std::uint32_t number)
+{
+  std::uint32_t bits;
+  std::memcpy(&bits, &start, sizeof(bits));
+  return Pending(bits) << 32 | number;
+}
+HRT_LANES float startOf(Pending p)
+{
+  const std::uint32_t bits = static_cast<std::uint32_t>(p >> 32);
+  float start;
+  std::memcpy(&start, &bits, sizeof(start));
+  return start;
+}
+
+// Visits the leaves that the ray (or what else has NodeRay::meet) meets, the nearest first if
+// `kNearestFirst`, until there is none or one of them has said that it is enough. `leaves(i, end)`
+// visits the i-th leaf and returns where the search now ends; a negative end: it is over.
+// `leaves.fetch(child)` is told of what will be visited, for the caches.
+template <bool kNearestFirst, class Met, class Leaves>
+HRT_LANES void traverse(const WideTree& tree, const Met& ray, float end, Leaves& leaves)
+{
+  if (tree.empty())
+  {
+    return;
+  }
+  const WideNode* const nodes = tree.nodes();
+  Pending stack[WideTree::kDeepest * (WideNode::kWidth - 1) + 1];
+  Pending* top = stack;
+  std::uint32_t at = tree.root();
+  alignas(32) float starts[WideNode::kWidth];
+  for (;;)
+  {
+    while ((at & WideTree::kLeaf) == 0)
+    {
+      const WideNode& node = nodes[at];
+      Floats start;
+      unsigned int met = ray.meet(node, all(end), start);
+      if (met == 0)
+      {
+        goto next;
+      }
+      const int first = __builtin_ctz(met);
+      met &= met - 1;
+      at = node.child[first];
+      leaves.fetch(at);
+      if (met == 0)
+      {
+        continue;
+      }
+      store(starts, start);
+      Pending nearest = pending(starts[first], at);
+      Pending* const base = top;
+      do
+      {
+        const int other = __builtin_ctz(met);
+        met &= met - 1;
+        leaves.fetch(node.child[other]);
+        Pending one = pending(starts[other], node.child[other]);
+        if (!kNearestFirst)
+        {
+          *top++ = one;
+          continue;
+        }
+        // The nearest in hand, the others in order, the next one on top.
+        if (one < nearest)
+        {
+          std::swap(one, nearest);
+        }
+        Pending* place = top++;
+        for (; place > base && place[-1] < one; --place)
+        {
+          *place = place[-1];
+        }
+        *place = one;
+      } while (met != 0);
+      at = static_cast<std::uint32_t>(nearest);
+    }
+    end = leaves(at & ~WideTree::kLeaf, end);
+    if (end < 0.0f)
+    {
+      return;
+    }
+  next:
+    do
+    {
+      if (top == stack)
+      {
+        return;
+      }
+      --top;
+    } while (!(startOf(*top) <= end));
+    at = static_cast<std::uint32_t>(*top);
+  }
+}
+
+// --- Triangles --------------------------------------------------------------------------------------
+
+// The axes of a ray's shear; z: one along which its direction is 1 or -1.
+struct Axes
+{
+  int x, y, z;
+
+  HRT_LANES explicit Axes(const glm::vec3& direction)
+  {
+    this->z = std::fabs(direction.x) >= 1.0f ? 0 : (std::fabs(direction.y) >= 1.0f ? 1 : 2);
+    this->x = this->z == 2 ? 0 : this->z + 1;
+    this->y = this->z == 0 ? 2 : this->z - 1;
+  }
+};
+
+// What the sieve wants of a ray: one ray in all lanes, or a ray to a lane.
+struct SieveRay
+{
+  Floats x, y;       // of the origin, along the axes of the shear
+  Floats z;          // the same, forward
+  Floats shearX, shearY;
+  Floats forward;    // the sign of the direction's z
+};
+
+// A triangle to a lane, or one in all lanes; along the axes of the shear.
+struct SieveCorner
+{
+  Floats x, y, z;
+};
+
+// The sieve of TriangleBlock.h.
+struct Sieved
+{
+  Floats bound, inner, outer; // of the edge functions: their bound, the least and the most
+  Floats nearest, farthest;   // of the corners, along the ray
+  Floats depth;               // the bound of that
+
+  HRT_LANES Sieved(const SieveCorner& a, const SieveCorner& b, const SieveCorner& c,
+    const SieveRay& ray, const SieveSlack& slack)
+  {
+    const Floats az = mulSub(a.z, ray.forward, ray.z), bz = mulSub(b.z, ray.forward, ray.z),
+                 cz = mulSub(c.z, ray.forward, ray.z);
+    const Floats ax = subMul(a.x - ray.x, ray.shearX, az), ay = subMul(a.y - ray.y, ray.shearY, az);
+    const Floats bx = subMul(b.x - ray.x, ray.shearX, bz), by = subMul(b.y - ray.y, ray.shearY, bz);
+    const Floats cx = subMul(c.x - ray.x, ray.shearX, cz), cy = subMul(c.y - ray.y, ray.shearY, cz);
+    const Floats u = mulSub(cx, by, cy * bx), v = mulSub(ax, cy, ay * cx),
+                 w = mulSub(bx, ay, by * ax);
+    const Floats s = most(size(ax) + size(ay), most(size(bx) + size(by), size(cx) + size(cy)));
+    this->bound = mulAdd(all(slack.edge), s, all(slack.floor));
+    this->inner = least(u, least(v, w));
+    this->outer = most(u, most(v, w));
+    this->nearest = least(az, least(bz, cz));
+    this->farthest = most(az, most(bz, cz));
+    this->depth = all(slack.depth);
+  }
+
+  // Lanes that may be hit before `end`; a NaN may.
+  HRT_LANES unsigned int possible(Floats end) const
+  {
+    const Floats none = all(0.0f);
+    const unsigned int outside = (less(this->inner, none - this->bound) & less(this->bound, this->outer)) |
+      less(end + this->depth, this->nearest) | less(this->farthest, none - this->depth);
+    return outside ^ ((1u << kLanes) - 1u);
+  }
+
+  // Lanes that surely are, and not after the true end.
+  HRT_LANES unsigned int sure(Floats end) const
+  {
+    const Floats none = all(0.0f);
+    const Floats before = mulSub(end, all(1.0f - 0x1p-21f), this->depth);
+    return (less(this->bound, this->inner) | less(this->outer, none - this->bound)) &
+      less(this->depth, this->nearest) & less(this->farthest, before);
+  }
+};
+
+// A block's cache lines, or a node's first, on their way while others are still visited.
+HRT_LANES void fetchFrom(const Hierarchy& hierarchy, std::uint32_t child)
+{
+  if ((child & WideTree::kLeaf) == 0)
+  {
+    __builtin_prefetch(hierarchy.tree().nodes() + child);
+    return;
+  }
+  constexpr std::size_t kCacheLine = 64;
+  const auto* const block =
+    reinterpret_cast<const char*>(&hierarchy.block(child & ~WideTree::kLeaf));
+  for (std::size_t byte = 0; byte < sizeof(TriangleBlock); byte += kCacheLine)
+  {
+    __builtin_prefetch(block + byte);
+  }
+}
+
+template <bool kAny>
+struct Triangles
+{
+  const Hierarchy& hierarchy;
+  const Member* const members;
+  Search& search;
+  const TraversalRay& ray;
+  const Axes axes;
+  const SieveRay sieveRay;
+
+  HRT_LANES Triangles(const Hierarchy& h, const Member* m, Search& s, const TraversalRay& r)
+    : hierarchy(h)
+    , members(m)
+    , search(s)
+    , ray(r)
+    , axes(r.direction)
+    , sieveRay{ all(r.origin[axes.x]), all(r.origin[axes.y]),
+      all(r.origin[axes.z] * r.direction[axes.z]), all(r.direction[axes.x]),
+      all(r.direction[axes.y]), all(r.direction[axes.z]) }
+  {
+  }
+
+  HRT_LANES SieveCorner corner(const TriangleBlock& block, int i) const
+  {
+    return { load(block.corner[i][this->axes.x]), load(block.corner[i][this->axes.y]),
+      load(block.corner[i][this->axes.z]) };
+  }
+
+  HRT_LANES void fetch(std::uint32_t child) const { fetchFrom(this->hierarchy, child); }
+
+  HRT_LANES float operator()(std::uint32_t number, float end)
+  {
+    const TriangleBlock& block = this->hierarchy.block(number);
+    const Sieved sieved(this->corner(block, 0), this->corner(block, 1), this->corner(block, 2),
+      this->sieveRay, this->hierarchy.slack());
+    const unsigned int possible = sieved.possible(all(end));
+    if (possible == 0)
+    {
+      return end;
+    }
+    if (kAny)
+    {
+      const SieveResult lanes = { possible, sieved.sure(all(end)) };
+      this->search.found = this->hierarchy.any(number, lanes, this->members, this->search);
+      return this->search.found ? -1.0f : end;
+    }
+    return this->hierarchy.nearest(number, possible, this->members, this->search)
+      ? this->ray.end(this->search.best.t)
+      : end;
+  }
+};
+
+template <bool kAny>
+HRT_TARGET void searchPart(const TopLevel& scene, const Placed& part, Search& search)
+{
+  TraversalRay ray;
+  if (!part.enter(search, ray))
+  {
+    return;
+  }
+  const float end = ray.end(search.end());
+  Triangles<kAny> triangles(*part.hierarchy, scene.membersOf(part), search, ray);
+  traverse<!kAny>(part.hierarchy->tree(), NodeRay(ray), end, triangles);
+}
+
+// --- Parts ------------------------------------------------------------------------------------------
+
+template <bool kAny>
+struct Parts
+{
+  const TopLevel& scene;
+  Search& search;
+  const TraversalRay& ray;
+
+  HRT_LANES void fetch(std::uint32_t) const {}
+
+  HRT_LANES float operator()(std::uint32_t leaf, float end)
+  {
+    const Placed& part = this->scene.leaf(leaf);
+    if (!(kAny ? part.castsShadow : part.visibleToRays))
+    {
+      return end;
+    }
+    searchPart<kAny>(this->scene, part, this->search);
+    return this->search.found ? -1.0f : this->ray.end(this->search.end());
+  }
+};
+
+template <bool kAny>
+HRT_TARGET void searchScene(const TopLevel& scene, Search& search)
+{
+  if (scene.size() == 0 || !search.usable())
+  {
+    return;
+  }
+  if (scene.size() == 1)
+  {
+    searchPart<kAny>(scene, scene.part(0), search);
+    return;
+  }
+  TraversalRay upper;
+  const Ray& ray = *search.ray;
+  if (enterBox(scene.entry(), ray.origin, ray.direction, search.end(), upper))
+  {
+    Parts<kAny> parts{ scene, search, upper };
+    traverse<!kAny>(scene.tree(), NodeRay(upper), upper.end(search.end()), parts);
+  }
+}
+
+HRT_TARGET void nearest(const TopLevel& scene, Search& search)
+{
+  searchScene<false>(scene, search);
+}
+
+HRT_TARGET void any(const TopLevel& scene, Search& search)
+{
+  searchScene<true>(scene, search);
+}
+
+#include "Rendering/Core/Structures/EmbreePackets.inl"
+
+#undef HRT_LANES
+
+} // namespace HRT_KERNELS
+} // namespace embree
+} // namespace hrt

@@ -1,0 +1,177 @@
+// Implements the exact kernel on lanes: one function says what a lane does.
+#include "Rendering/Core/Structures/ExactLanes.h"
+
+#include <cmath>
+#include <cstdint>
+#include <limits>
+
+#if defined(__GNUC__)
+#define HRT_INLINE inline __attribute__((always_inline))
+#else
+#define HRT_INLINE inline
+#endif
+
+namespace hrt
+{
+
+int ExactShear::longestAxis(const glm::dvec3& direction)
+{
+  const glm::dvec3 a = glm::abs(direction);
+  return a.x >= a.y && a.x >= a.z ? 0 : (a.y >= a.z ? 1 : 2);
+}
+
+ExactShear::ExactShear(const glm::dvec3& direction)
+  : longest(longestAxis(direction))
+{
+  const double along = direction[this->longest];
+  this->x = direction[(this->longest + 1) % 3] / along;
+  this->y = direction[(this->longest + 2) % 3] / along;
+  this->scale = 1.0 / along;
+}
+
+namespace
+{
+
+constexpr unsigned int kLanes = ExactLanes::kLanes;
+
+// The matrix' rows in the order of the shear's axes: those across, then the longest.
+struct Rows
+{
+  double of[3][4];
+
+  HRT_INLINE Rows(const glm::dmat4& m, const int (&axes)[3])
+  {
+    for (int k = 0; k < 3; ++k)
+    {
+      for (int column = 0; column < 4; ++column)
+      {
+        this->of[k][column] = m[column][axes[k]];
+      }
+    }
+  }
+};
+
+struct Axes
+{
+  int of[3];
+  HRT_INLINE explicit Axes(int longest)
+    : of{ longest == 2 ? 0 : longest + 1, longest == 0 ? 2 : longest - 1, longest }
+  {
+  }
+};
+
+// A lane's edge functions and depths.
+struct Edges
+{
+  double a, b, c, depthA, depthB, depthC;
+  bool inside;
+
+  // `at(corner, axis)`: the position; `from(k)`: the ray's origin, along the k-th of the axes.
+  template <class At, class From>
+  HRT_INLINE Edges(const Rows& rows, At at, From from, double shearX, double shearY)
+  {
+    double corner[3][3];
+    for (int i = 0; i < 3; ++i)
+    {
+      const double x = at(i, 0), y = at(i, 1), z = at(i, 2);
+      for (int k = 0; k < 3; ++k)
+      {
+        const double(&row)[4] = rows.of[k];
+        corner[i][k] = (row[0] * x + row[1] * y + row[2] * z + row[3]) - from(k);
+      }
+    }
+    this->depthA = corner[0][2];
+    this->depthB = corner[1][2];
+    this->depthC = corner[2][2];
+    const double ax = corner[0][0] - shearX * this->depthA, ay = corner[0][1] - shearY * this->depthA;
+    const double bx = corner[1][0] - shearX * this->depthB, by = corner[1][1] - shearY * this->depthB;
+    const double cx = corner[2][0] - shearX * this->depthC, cy = corner[2][1] - shearY * this->depthC;
+    this->a = cx * by - cy * bx;
+    this->b = ax * cy - ay * cx;
+    this->c = bx * ay - by * ax;
+    this->inside = ((this->a >= 0.0) & (this->b >= 0.0) & (this->c >= 0.0)) |
+      ((this->a <= 0.0) & (this->b <= 0.0) & (this->c <= 0.0));
+  }
+
+  // The hit's t, u, v; false when it is not before `last` or is no number.
+  HRT_INLINE bool solve(double scale, double last, double& t, double& u, double& v) const
+  {
+    // Outside nothing is divided by zero, as the kernel divides only inside.
+    const double determinant = this->inside ? this->a + this->b + this->c : 1.0;
+    t = scale * (this->a * this->depthA + this->b * this->depthB + this->c * this->depthC) /
+      determinant;
+    u = this->b / determinant;
+    v = this->c / determinant;
+    constexpr double largest = std::numeric_limits<double>::max();
+    const bool finite =
+      (std::fabs(t) <= largest) & (std::fabs(u) <= largest) & (std::fabs(v) <= largest);
+    return this->inside & finite & (t > 0.0) & (t < last);
+  }
+};
+
+HRT_INLINE unsigned int hitLanes(ExactLanes& lanes, const glm::dmat4& m, int longest)
+{
+  const Axes axes(longest);
+  const Rows rows(m, axes.of);
+  const double* const originX = lanes.origin[axes.of[0]];
+  const double* const originY = lanes.origin[axes.of[1]];
+  const double* const originZ = lanes.origin[axes.of[2]];
+  const double* const directionX = lanes.direction[axes.of[0]];
+  const double* const directionY = lanes.direction[axes.of[1]];
+  const double* const directionZ = lanes.direction[axes.of[2]];
+  std::int64_t hits[kLanes];
+  for (unsigned int i = 0; i < kLanes; ++i)
+  {
+    const double along = directionZ[i];
+    const Edges edges(
+      rows, [&](int corner, int axis) { return lanes.position[corner][axis][i]; },
+      [&](int k) { return k == 0 ? originX[i] : (k == 1 ? originY[i] : originZ[i]); },
+      directionX[i] / along, directionY[i] / along);
+    double t, u, v;
+    hits[i] = edges.solve(1.0 / along, lanes.last[i], t, u, v) ? 1 : 0;
+    lanes.t[i] = t;
+    lanes.u[i] = u;
+    lanes.v[i] = v;
+  }
+  unsigned int result = 0;
+  for (unsigned int i = 0; i < kLanes; ++i)
+  {
+    result |= static_cast<unsigned int>(hits[i]) << i;
+  }
+  return result;
+}
+
+unsigned int hitNarrow(ExactLanes& lanes, const glm::dmat4& m, int longest)
+{
+  return hitLanes(lanes, m, longest);
+}
+
+#if defined(__GNUC__) && defined(__x86_64__)
+__attribute__((target("avx2"))) unsigned int hitWide(
+  ExactLanes& lanes, const glm::dmat4& m, int longest)
+{
+  return hitLanes(lanes, m, longest);
+}
+#else
+constexpr auto hitWide = hitNarrow;
+#endif
+
+} // namespace
+
+unsigned int ExactLanes::hit(const glm::dmat4& toScene, int longest, bool wide)
+{
+  return wide ? hitWide(*this, toScene, longest) : hitNarrow(*this, toScene, longest);
+}
+
+bool exactHit(const ExactShear& shear, const glm::dvec3& origin, double last,
+  const ExactPositions& positions, const glm::dmat4& toScene, TriangleHit& hit)
+{
+  const Axes axes(shear.longest);
+  const double from[3] = { origin[axes.of[0]], origin[axes.of[1]], origin[axes.of[2]] };
+  const Edges edges(
+    Rows(toScene, axes.of), [&](int corner, int axis) { return double(positions(corner, axis)); },
+    [&](int k) { return from[k]; }, shear.x, shear.y);
+  return edges.inside && edges.solve(shear.scale, last, hit.t, hit.u, hit.v);
+}
+
+} // namespace hrt

@@ -1,0 +1,58 @@
+// The exact kernel of Geometry/TriangleTest.h once more, for the hottest place: on triangles as
+// hierarchies keep them, alone or for eight pairs of a ray and a triangle at once. The same operations
+// in the same order, hence the same bits and the same proof; the tests compare the two bit by bit.
+// Like the kernel it is compiled with -ffp-contract=off, and for AVX2 without fused operations.
+#pragma once
+
+#include "Rendering/Core/Geometry/TriangleTest.h"
+
+namespace hrt
+{
+
+// A usable ray's direction as ShearedRay keeps it.
+struct ExactShear
+{
+  int longest = -1; // axis; -1: not known yet
+  double x = 0.0, y = 0.0, scale = 0.0;
+
+  ExactShear() = default;
+  explicit ExactShear(const glm::dvec3& direction);
+
+  static int longestAxis(const glm::dvec3& direction);
+};
+
+// A triangle's positions in its geometry, where they lie: corner by corner, axis by axis.
+struct ExactPositions
+{
+  const float* first;
+  int cornerStep, axisStep;
+
+  float operator()(int corner, int axis) const
+  {
+    return this->first[corner * this->cornerStep + axis * this->axisStep];
+  }
+};
+
+// ShearedRay::hitsTriangle of the triangle as `toScene` places it.
+bool exactHit(const ExactShear& shear, const glm::dvec3& origin, double last,
+  const ExactPositions& positions, const glm::dmat4& toScene, TriangleHit& hit);
+
+struct ExactLanes
+{
+  static constexpr unsigned int kLanes = 8;
+
+  // In: usable rays, in scene coordinates, and the triangles' positions.
+  alignas(32) double origin[3][kLanes];
+  alignas(32) double direction[3][kLanes];
+  alignas(32) double last[kLanes];           // the ray's tMaximum
+  alignas(32) double position[3][3][kLanes]; // corner, axis
+
+  // Out.
+  alignas(32) double t[kLanes], u[kLanes], v[kLanes];
+
+  // The lanes that hit, as bits. All triangles are placed by the one matrix; `longest` is the longest
+  // axis of all directions.
+  unsigned int hit(const glm::dmat4& toScene, int longest, bool wide);
+};
+
+} // namespace hrt
