@@ -45,8 +45,8 @@ bool Candidates::alike(const Pair* pairs, unsigned int count)
     }
   }
   return this->Longest < 3 && count > 2 &&
-    std::all_of(pairs, pairs + count,
-      [pairs](const Pair& pair) { return pair.member == pairs[0].member; });
+    std::all_of(
+      pairs, pairs + count, [pairs](const Pair& pair) { return pair.member == pairs[0].member; });
 }
 
 unsigned int Candidates::decideSingly(const Pair& pair)

@@ -1,5 +1,5 @@
-// Pairs of a ray and a triangle that the sieve has let pass for the rays of a packet, gathered until
-// there are enough of them for the exact kernel to decide eight at once.
+// Pairs of a ray and a triangle that the sieve has let pass for the rays of a packet, gathered
+// until there are enough of them for the exact kernel to decide eight at once.
 #pragma once
 
 #include "Rendering/Core/Structures/EmbreeHierarchy.h"

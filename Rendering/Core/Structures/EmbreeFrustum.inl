@@ -107,20 +107,20 @@ private:
 // all their directions are 1 or all are -1. A line joins the least (or most) x of any ray where the
 // first ray begins and where the outer box ends: no ray, being straight, leaves it in between.
 //
-// Everything is widened by 64 R e, with R the reach and e = 2^-24, 4 times TraversalBox::padding. At
-// both depths a ray's x is off by 11 R e: its origin's by R e, twice, for x and z; its direction,
-// rounded, over 2 R, by 2 R e; the difference of depths by 2 R e, its product with the direction by
-// 2 R e, the sum, of at most 3 R, by 3 R e. The line's slope is no steeper than a ray's, 1; it is off
-// by what the two ends' difference and the quotient are rounded by, over the depth 12 R e, and by
-// nothing more where it is cut off at 1. Its offset, of up to 5 R, and its evaluation at a box, of up
-// to 6 R, cost another 5 and 2 times 6 R e. Together 40 R e.
+// Everything is widened by 64 R e, with R the reach and e = 2^-24, 4 times TraversalBox::padding.
+// At both depths a ray's x is off by 11 R e: its origin's by R e, twice, for x and z; its
+// direction, rounded, over 2 R, by 2 R e; the difference of depths by 2 R e, its product with the
+// direction by 2 R e, the sum, of at most 3 R, by 3 R e. The line's slope is no steeper than a
+// ray's, 1; it is off by what the two ends' difference and the quotient are rounded by, over the
+// depth 12 R e, and by nothing more where it is cut off at 1. Its offset, of up to 5 R, and its
+// evaluation at a box, of up to 6 R, cost another 5 and 2 times 6 R e. Together 40 R e.
 struct Frustum
 {
   unsigned int rays = 0; // bits of those that are still searching
   PerRay<float> apart;   // zero; infinity for those that are not, or not any more
   int x = 0, y = 0, z = 0;
   float forward = 1.0f;
-  float begin = 0.0f;              // the first origin's forward * z
+  float begin = 0.0f; // the first origin's forward * z
   float slack = 0.0f;
   float slope[2][2], offset[2][2]; // lower and upper; x and y
   float width = 0.0f;              // the largest, at either end
@@ -129,8 +129,8 @@ struct Frustum
   HRT_TARGET bool enclose(const PacketEntry& entry, const TraversalBox& box)
   {
     const int first = lowest(entry.active);
-    const Axes axes(glm::vec3(entry.direction[0].of[first], entry.direction[1].of[first],
-      entry.direction[2].of[first]));
+    const Axes axes(glm::vec3(
+      entry.direction[0].of[first], entry.direction[1].of[first], entry.direction[2].of[first]));
     this->x = axes.x;
     this->y = axes.y;
     this->z = axes.z;
@@ -143,7 +143,8 @@ struct Frustum
       const Floats way = load(entry.direction[axes.z].of + half) * all(this->forward);
       back |= less(way, all(1.0f)) << half;
       first0 = least(first0,
-        mulAdd(load(entry.origin[axes.z].of + half), all(this->forward), load(this->apart.of + half)));
+        mulAdd(
+          load(entry.origin[axes.z].of + half), all(this->forward), load(this->apart.of + half)));
     }
     if ((back & entry.active) != 0)
     {
@@ -173,9 +174,11 @@ struct Frustum
     Floats last = all(-1.0f);
     for (unsigned int half = 0; half < kPacket; half += kLanes)
     {
-      const Floats start = mulSub(load(entry.origin[this->z].of + half), all(this->forward), all(this->begin));
+      const Floats start =
+        mulSub(load(entry.origin[this->z].of + half), all(this->forward), all(this->begin));
       // An end may be infinite, and infinity less infinity no number.
-      const Floats end = least(start + load(entry.end.of + half), all(std::numeric_limits<float>::max()));
+      const Floats end =
+        least(start + load(entry.end.of + half), all(std::numeric_limits<float>::max()));
       last = most(last, end - load(this->apart.of + half));
     }
     return largest(last) + this->slack;
@@ -207,8 +210,10 @@ struct Frustum
 
   HRT_LANES unsigned int meet(const WideNode& node, Floats end, Floats& start) const
   {
-    const Floats lower[3] = { load(node.bound[0][0]), load(node.bound[0][1]), load(node.bound[0][2]) };
-    const Floats upper[3] = { load(node.bound[1][0]), load(node.bound[1][1]), load(node.bound[1][2]) };
+    const Floats lower[3] = { load(node.bound[0][0]), load(node.bound[0][1]),
+      load(node.bound[0][2]) };
+    const Floats upper[3] = { load(node.bound[1][0]), load(node.bound[1][1]),
+      load(node.bound[1][2]) };
     return this->meet(lower, upper, end, start);
   }
 
@@ -232,7 +237,8 @@ private:
     {
       const Floats shear = load(entry.direction[axis].of + half);
       const Floats out = load(this->apart.of + half);
-      const Floats after = mulSub(load(entry.origin[this->z].of + half), all(this->forward), all(this->begin));
+      const Floats after =
+        mulSub(load(entry.origin[this->z].of + half), all(this->forward), all(this->begin));
       const Floats at0 = subMul(load(entry.origin[axis].of + half), shear, after);
       const Floats at1 = mulAdd(shear, all(depth), at0);
       lower[0] = least(lower[0], at0 + out);
@@ -254,7 +260,6 @@ private:
     const float offset0 = at0 - inclined * (this->begin * this->forward);
     const float offset1 = at1 - inclined * ((this->begin + depth) * this->forward);
     this->slope[side][which] = inclined;
-    this->offset[side][which] =
-      side == 0 ? std::min(offset0, offset1) : std::max(offset0, offset1);
+    this->offset[side][which] = side == 0 ? std::min(offset0, offset1) : std::max(offset0, offset1);
   }
 };

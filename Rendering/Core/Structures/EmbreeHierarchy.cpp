@@ -61,8 +61,8 @@ std::vector<RTCBuildPrimitive> boxesOf(const std::vector<SourceTriangle>& triang
     {
       const glm::vec3 lower = glm::min(c[0], glm::min(c[1], c[2]));
       const glm::vec3 upper = glm::max(c[0], glm::max(c[1], c[2]));
-      boxes.push_back({ lower.x, lower.y, lower.z, 0, upper.x, upper.y, upper.z,
-        static_cast<unsigned int>(i) });
+      boxes.push_back(
+        { lower.x, lower.y, lower.z, 0, upper.x, upper.y, upper.z, static_cast<unsigned int>(i) });
     }
   }
   return boxes;

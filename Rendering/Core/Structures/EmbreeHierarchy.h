@@ -47,7 +47,8 @@ public:
 
   // The exact test of the lanes of a block that the sieve has let pass. `nearest`: true when one of
   // them is the search's best hit now. `any`: true when one is hit by a shadow ray.
-  bool nearest(std::uint32_t block, unsigned int lanes, const Member* members, Search& search) const;
+  bool nearest(
+    std::uint32_t block, unsigned int lanes, const Member* members, Search& search) const;
   bool any(std::uint32_t block, SieveResult lanes, const Member* members, Search& search) const;
 
   const Member& memberOf(std::size_t block, int lane, const Member* members) const
@@ -69,7 +70,8 @@ private:
 
   WideTree Tree;
   std::vector<TriangleBlock> Blocks;
-  // kLanes a block, unless all triangles are of one member; and if they are not those of the blocks.
+  // kLanes a block, unless all triangles are of one member; and if they are not those of the
+  // blocks.
   std::vector<std::uint32_t> Members;
   std::vector<std::array<glm::vec3, 3>> OwnPositions;
   TraversalBox Box;

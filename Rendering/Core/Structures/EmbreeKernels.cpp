@@ -39,10 +39,9 @@ namespace embree
 
 const Kernels& kernelsFor(bool wide)
 {
-  static const Kernels both[] = {
-    { &narrow::nearest, &narrow::any, &narrow::nearestOfPacket, &narrow::anyOfPacket },
-    { &wide::nearest, &wide::any, &wide::nearestOfPacket, &wide::anyOfPacket }
-  };
+  static const Kernels both[] = { { &narrow::nearest, &narrow::any, &narrow::nearestOfPacket,
+                                    &narrow::anyOfPacket },
+    { &wide::nearest, &wide::any, &wide::nearestOfPacket, &wide::anyOfPacket } };
   return both[wide ? 1 : 0];
 }
 

@@ -14,7 +14,8 @@ namespace HRT_KERNELS
 constexpr unsigned int kLanes = TriangleBlock::kLanes;
 static_assert(WideNode::kWidth == kLanes, "a value's lanes are a node's children");
 
-// --- Boxes ------------------------------------------------------------------------------------------
+// --- Boxes
+// ------------------------------------------------------------------------------------------
 
 // A ray as the nodes of a tree want it.
 struct NodeRay
@@ -39,9 +40,8 @@ struct NodeRay
     const int x = this->nearer[0], y = this->nearer[1], z = this->nearer[2];
     start = most(most(this->plane(node, 0, x), this->plane(node, 1, y)),
       most(this->plane(node, 2, z), all(0.0f)));
-    const Floats stop =
-      least(least(this->plane(node, 0, x ^ 1), this->plane(node, 1, y ^ 1)),
-        least(this->plane(node, 2, z ^ 1), end));
+    const Floats stop = least(least(this->plane(node, 0, x ^ 1), this->plane(node, 1, y ^ 1)),
+      least(this->plane(node, 2, z ^ 1), end));
     return lessEqual(start, stop);
   }
 
@@ -150,7 +150,8 @@ HRT_LANES void traverse(const WideTree& tree, const Met& ray, float end, Leaves&
   }
 }
 
-// --- Triangles --------------------------------------------------------------------------------------
+// --- Triangles
+// --------------------------------------------------------------------------------------
 
 // The axes of a ray's shear; z: one along which its direction is 1 or -1.
 struct Axes
@@ -168,10 +169,10 @@ struct Axes
 // What the sieve wants of a ray: one ray in all lanes, or a ray to a lane.
 struct SieveRay
 {
-  Floats x, y;       // of the origin, along the axes of the shear
-  Floats z;          // the same, forward
+  Floats x, y; // of the origin, along the axes of the shear
+  Floats z;    // the same, forward
   Floats shearX, shearY;
-  Floats forward;    // the sign of the direction's z
+  Floats forward; // the sign of the direction's z
 };
 
 // A triangle to a lane, or one in all lanes; along the axes of the shear.
@@ -210,7 +211,8 @@ struct Sieved
   HRT_LANES unsigned int possible(Floats end) const
   {
     const Floats none = all(0.0f);
-    const unsigned int outside = (less(this->inner, none - this->bound) & less(this->bound, this->outer)) |
+    const unsigned int outside =
+      (less(this->inner, none - this->bound) & less(this->bound, this->outer)) |
       less(end + this->depth, this->nearest) | less(this->farthest, none - this->depth);
     return outside ^ ((1u << kLanes) - 1u);
   }
@@ -307,7 +309,8 @@ HRT_TARGET void searchPart(const TopLevel& scene, const Placed& part, Search& se
   traverse<!kAny>(part.hierarchy->tree(), NodeRay(ray), end, triangles);
 }
 
-// --- Parts ------------------------------------------------------------------------------------------
+// --- Parts
+// ------------------------------------------------------------------------------------------
 
 template <bool kAny>
 struct Parts

@@ -1,6 +1,6 @@
 // Many parts in one hierarchy: those at rest, and those too small or too crowded for one each
-// (Grouping.h). It outlives the snapshot it was built from: parts may leave it, and the scene's origin
-// may move.
+// (Grouping.h). It outlives the snapshot it was built from: parts may leave it, and the scene's
+// origin may move.
 #pragma once
 
 #include "Rendering/Core/Structures/EmbreeHierarchy.h"

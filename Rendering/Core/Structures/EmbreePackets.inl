@@ -1,11 +1,12 @@
-// Sixteen neighbouring rays together. Their hull, a frustum, goes down the tree in place of them, at
-// the cost of one ray; in the leaves it picks the triangles, each of which the sieve then tests
+// Sixteen neighbouring rays together. Their hull, a frustum, goes down the tree in place of them,
+// at the cost of one ray; in the leaves it picks the triangles, each of which the sieve then tests
 // against eight rays at once. Rays that do not lie together, by direction or by width, are divided
 // and in the end go singly. Included by EmbreeKernels.inl.
 
 #include "Rendering/Core/Structures/EmbreeFrustum.inl"
 
-// --- Triangles --------------------------------------------------------------------------------------
+// --- Triangles
+// --------------------------------------------------------------------------------------
 
 template <bool kAny>
 struct PacketTriangles
@@ -68,8 +69,8 @@ struct PacketTriangles
     for (unsigned int rest = nearer; rest != 0; rest &= rest - 1)
     {
       const int i = lowest(rest);
-      this->entry.end.of[i] = std::min(
-        this->entry.end.of[i], this->entry.endOf(i, this->searches[i].best.t));
+      this->entry.end.of[i] =
+        std::min(this->entry.end.of[i], this->entry.endOf(i, this->searches[i].best.t));
     }
     return nearer != 0;
   }
@@ -77,8 +78,8 @@ struct PacketTriangles
 private:
   HRT_LANES SieveCorner corner(const TriangleBlock& block, int i, int lane) const
   {
-    return { all(block.corner[i][this->frustum.x][lane]), all(block.corner[i][this->frustum.y][lane]),
-      all(block.corner[i][this->frustum.z][lane]) };
+    return { all(block.corner[i][this->frustum.x][lane]),
+      all(block.corner[i][this->frustum.y][lane]), all(block.corner[i][this->frustum.z][lane]) };
   }
 
   // Whether some ray's search ends earlier now.
@@ -111,8 +112,7 @@ private:
     {
       const int i = lowest(rest);
       const SieveResult one = { 1u << lane, (met.sure >> i & 1u) << lane };
-      this->searches[i].found =
-        this->hierarchy.any(number, one, this->members, this->searches[i]);
+      this->searches[i].found = this->hierarchy.any(number, one, this->members, this->searches[i]);
       found |= this->searches[i].found ? 1u << i : 0u;
     }
     if (found != 0)
@@ -131,9 +131,11 @@ private:
     for (unsigned int rest = met.possible; rest != 0; rest &= rest - 1)
     {
       const int i = lowest(rest);
-      if (this->candidates.add(number, lane, static_cast<unsigned int>(i)) && (met.sure >> i & 1u) != 0)
+      if (this->candidates.add(number, lane, static_cast<unsigned int>(i)) &&
+        (met.sure >> i & 1u) != 0)
       {
-        const float end = (farthest.of[i] + 2.0f * this->hierarchy.slack().depth) * (1.0f + 0x1p-22f);
+        const float end =
+          (farthest.of[i] + 2.0f * this->hierarchy.slack().depth) * (1.0f + 0x1p-22f);
         shorter = shorter || end < this->entry.end.of[i];
         this->entry.end.of[i] = std::min(this->entry.end.of[i], end);
       }
@@ -186,10 +188,14 @@ struct PartPacket
     traverse<!kAny>(hierarchy.tree(), frustum, frustum.end(this->entry), triangles);
     triangles.decide(1);
   }
-  HRT_TARGET void operator()(int i) { searchPart<kAny>(this->scene, this->part, this->searches[i]); }
+  HRT_TARGET void operator()(int i)
+  {
+    searchPart<kAny>(this->scene, this->part, this->searches[i]);
+  }
 };
 
-// --- Parts ------------------------------------------------------------------------------------------
+// --- Parts
+// ------------------------------------------------------------------------------------------
 
 template <bool kAny>
 HRT_TARGET void searchPart(
@@ -210,8 +216,8 @@ HRT_TARGET void place(const Placed& part, const PacketRays& inScene, const Searc
     const double x = m[0][axis], y = m[1][axis], z = m[2][axis], shift = m[3][axis];
     for (unsigned int i = 0; i < kPacket; ++i)
     {
-      rays.direction[axis].of[i] = x * inScene.direction[0].of[i] +
-        y * inScene.direction[1].of[i] + z * inScene.direction[2].of[i];
+      rays.direction[axis].of[i] = x * inScene.direction[0].of[i] + y * inScene.direction[1].of[i] +
+        z * inScene.direction[2].of[i];
       rays.origin[axis].of[i] = x * inScene.origin[0].of[i] + y * inScene.origin[1].of[i] +
         z * inScene.origin[2].of[i] + shift;
     }
@@ -245,10 +251,7 @@ struct PacketLeaves
 
   HRT_LANES void fetch(std::uint32_t) const {}
 
-  HRT_LANES float operator()(std::uint32_t leaf, float end)
-  {
-    return this->parts.visit(leaf, end);
-  }
+  HRT_LANES float operator()(std::uint32_t leaf, float end) { return this->parts.visit(leaf, end); }
 };
 
 template <bool kAny>

@@ -35,8 +35,8 @@ struct Search
     : ray(&r)
   {
   }
-  // Whether the ray can hit anything, by the exact kernel's rule. Neither this raises a floating-point
-  // exception, nor what follows when it is true.
+  // Whether the ray can hit anything, by the exact kernel's rule. Neither this raises a
+  // floating-point exception, nor what follows when it is true.
   bool usable() const
   {
     return isUsable(this->ray->origin, this->ray->direction) && !std::isnan(this->ray->tMaximum);

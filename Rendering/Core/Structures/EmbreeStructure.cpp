@@ -1,5 +1,5 @@
-// Implements the ray structure over Embree: which hierarchies there are, by Grouping.h, and where they
-// stand. How rays go through them is in EmbreeKernels.h.
+// Implements the ray structure over Embree: which hierarchies there are, by Grouping.h, and where
+// they stand. How rays go through them is in EmbreeKernels.h.
 #include "Rendering/Core/Structures/EmbreeStructure.h"
 
 #include "Rendering/Core/Structures/EmbreeDevice.h"

@@ -32,8 +32,8 @@ void TopLevel::rebuild(Device& device)
     this->Box.include(box.lower);
     this->Box.include(box.upper);
     const glm::vec3 lower(box.lower), upper(box.upper);
-    boxes.push_back({ lower.x, lower.y, lower.z, 0, upper.x, upper.y, upper.z,
-      static_cast<unsigned int>(i) });
+    boxes.push_back(
+      { lower.x, lower.y, lower.z, 0, upper.x, upper.y, upper.z, static_cast<unsigned int>(i) });
   }
   this->Entry = EntryBox(this->Box);
   const std::vector<WideTree::Leaf> leaves =

@@ -83,9 +83,12 @@ struct Edges
     this->depthA = corner[0][2];
     this->depthB = corner[1][2];
     this->depthC = corner[2][2];
-    const double ax = corner[0][0] - shearX * this->depthA, ay = corner[0][1] - shearY * this->depthA;
-    const double bx = corner[1][0] - shearX * this->depthB, by = corner[1][1] - shearY * this->depthB;
-    const double cx = corner[2][0] - shearX * this->depthC, cy = corner[2][1] - shearY * this->depthC;
+    const double ax = corner[0][0] - shearX * this->depthA,
+                 ay = corner[0][1] - shearY * this->depthA;
+    const double bx = corner[1][0] - shearX * this->depthB,
+                 by = corner[1][1] - shearY * this->depthB;
+    const double cx = corner[2][0] - shearX * this->depthC,
+                 cy = corner[2][1] - shearY * this->depthC;
     this->a = cx * by - cy * bx;
     this->b = ax * cy - ay * cx;
     this->c = bx * ay - by * ax;

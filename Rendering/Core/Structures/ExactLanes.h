@@ -1,7 +1,8 @@
 // The exact kernel of Geometry/TriangleTest.h once more, for the hottest place: on triangles as
-// hierarchies keep them, alone or for eight pairs of a ray and a triangle at once. The same operations
-// in the same order, hence the same bits and the same proof; the tests compare the two bit by bit.
-// Like the kernel it is compiled with -ffp-contract=off, and for AVX2 without fused operations.
+// hierarchies keep them, alone or for eight pairs of a ray and a triangle at once. The same
+// operations in the same order, hence the same bits and the same proof; the tests compare the two
+// bit by bit. Like the kernel it is compiled with -ffp-contract=off, and for AVX2 without fused
+// operations.
 #pragma once
 
 #include "Rendering/Core/Geometry/TriangleTest.h"
@@ -50,8 +51,8 @@ struct ExactLanes
   // Out.
   alignas(32) double t[kLanes], u[kLanes], v[kLanes];
 
-  // The lanes that hit, as bits. All triangles are placed by the one matrix; `longest` is the longest
-  // axis of all directions.
+  // The lanes that hit, as bits. All triangles are placed by the one matrix; `longest` is the
+  // longest axis of all directions.
   unsigned int hit(const glm::dmat4& toScene, int longest, bool wide);
 };
 

@@ -30,18 +30,18 @@ struct TraversalBox
     return std::max({ most.x, most.y, most.z });
   }
 
-  // How far each box within the hierarchy is grown, so that one fused multiplication a plane decides
-  // whether a ray meets a box, with no allowance at the node: for the plane at p, p * r - o * r with
-  // r the float next to the reciprocal of the direction's component, o the float origin.
+  // How far each box within the hierarchy is grown, so that one fused multiplication a plane
+  // decides whether a ray meets a box, with no allowance at the node: for the plane at p, p * r - o
+  // * r with r the float next to the reciprocal of the direction's component, o the float origin.
   // With R the reach and e = 2^-24, half an ulp, a plane is as if moved by
   //   R e   the rounding of the origin, which lies on or in the outer box,
   //   R e   that of o * r, which is e |o| in units of r,
   //   R e   that of p * r where the processor does not fuse,
   //   R e   that of the grown plane itself.
-  // The parameter is then off by the factors 1 + e of r and of the difference: beside a parameter of
-  // at most 2 R, which is as far as the ray runs within the box, by 4 R e, and |r| >= 1. Together
-  // 8 R e. The rest of 16 R e is for everything done in double, a million times finer, and for
-  // kSteepest. The floor keeps a box at the origin from vanishing among the smallest numbers.
+  // The parameter is then off by the factors 1 + e of r and of the difference: beside a parameter
+  // of at most 2 R, which is as far as the ray runs within the box, by 4 R e, and |r| >= 1.
+  // Together 8 R e. The rest of 16 R e is for everything done in double, a million times finer, and
+  // for kSteepest. The floor keeps a box at the origin from vanishing among the smallest numbers.
   double padding() const { return std::max(0x1p-20 * this->reach(), 1e-30); }
 };
 

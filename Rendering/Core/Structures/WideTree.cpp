@@ -47,13 +47,13 @@ struct Made
       static_cast<Made*>(node)->area[i] = x * y + y * z + z * x;
     }
   }
-  static void* createLeaf(RTCThreadLocalAllocator allocator, const RTCBuildPrimitive* boxes,
-    std::size_t count, void*)
+  static void* createLeaf(
+    RTCThreadLocalAllocator allocator, const RTCBuildPrimitive* boxes, std::size_t count, void*)
   {
     Made* const made = make(allocator);
     made->leaf.count = static_cast<std::uint32_t>(count);
-    std::transform(
-      boxes, boxes + count, made->leaf.box, [](const RTCBuildPrimitive& box) { return box.primID; });
+    std::transform(boxes, boxes + count, made->leaf.box,
+      [](const RTCBuildPrimitive& box) { return box.primID; });
     return made;
   }
 };
@@ -88,8 +88,8 @@ private:
   // them the first half is represented. One child: it is a wide node itself, which is divided so.
   struct Choice
   {
-    float cost[kWidth] = {};               // by the number of children that it may take
-    std::uint8_t first[kWidth] = {};       // zero: as with one child fewer
+    float cost[kWidth] = {};                      // by the number of children that it may take
+    std::uint8_t first[kWidth] = {};              // zero: as with one child fewer
     std::uint32_t half[2] = { kUnused, kUnused }; // numbers of choices; the second kUnused: a leaf
   };
 

@@ -42,8 +42,8 @@ public:
     std::uint32_t count = 0;
     std::uint32_t box[kMostInLeaf];
   };
-  std::vector<Leaf> build(
-    Device& device, std::vector<RTCBuildPrimitive>& boxes, unsigned int mostInLeaf, const char* doing);
+  std::vector<Leaf> build(Device& device, std::vector<RTCBuildPrimitive>& boxes,
+    unsigned int mostInLeaf, const char* doing);
 
   // Sets all bounds from those of the leaves: `boundsOf(i)` is the TraversalBox of the i-th leaf.
   template <class BoundsOf>
