@@ -107,13 +107,13 @@ private:
 // all their directions are 1 or all are -1. A line joins the least (or most) x of any ray where the
 // first ray begins and where the outer box ends: no ray, being straight, leaves it in between.
 //
-// Everything is widened by 64 R e, with R the reach and e = 2^-24, 4 times TraversalBox::padding.
-// At both depths a ray's x is off by 11 R e: its origin's by R e, twice, for x and z; its
-// direction, rounded, over 2 R, by 2 R e; the difference of depths by 2 R e, its product with the
-// direction by 2 R e, the sum, of at most 3 R, by 3 R e. The line's slope is no steeper than a
-// ray's, 1; it is off by what the two ends' difference and the quotient are rounded by, over the
-// depth 12 R e, and by nothing more where it is cut off at 1. Its offset, of up to 5 R, and its
-// evaluation at a box, of up to 6 R, cost another 5 and 2 times 6 R e. Together 40 R e.
+// Everything is widened by 20 (R + H) e, with R, H and e as in TraversalBox::padding, which is a
+// quarter of it. At both depths a ray's x is off by 3 R e + 8 H e: its origin's by R e, twice, for x
+// and z; its direction, rounded, over 2 H, by 2 H e; the difference of depths and its product with
+// the direction by 2 H e each; the sum, of at most R + 2 H, by R e + 2 H e. The line's slope is no
+// steeper than a ray's, 1; by what the two ends' difference and the quotient are rounded by, it is
+// off, over the depth, by 6 H e, and by nothing more where it is cut off at 1. Its offset costs 4 R e,
+// its evaluation at a box 3 R e. Together 10 R e + 14 H e.
 struct Frustum
 {
   unsigned int rays = 0; // bits of those that are still searching

@@ -33,16 +33,22 @@ struct TraversalBox
   // How far each box within the hierarchy is grown, so that one fused multiplication a plane
   // decides whether a ray meets a box, with no allowance at the node: for the plane at p, p * r - o
   // * r with r the float next to the reciprocal of the direction's component, o the float origin.
-  // With R the reach and e = 2^-24, half an ulp, a plane is as if moved by
+  // With R the reach, H half the longest side and e = 2^-24, half an ulp, a plane is as if moved by
   //   R e   the rounding of the origin, which lies on or in the outer box,
   //   R e   that of o * r, which is e |o| in units of r,
   //   R e   that of p * r where the processor does not fuse,
   //   R e   that of the grown plane itself.
   // The parameter is then off by the factors 1 + e of r and of the difference: beside a parameter
-  // of at most 2 R, which is as far as the ray runs within the box, by 4 R e, and |r| >= 1.
-  // Together 8 R e. The rest of 16 R e is for everything done in double, a million times finer, and
-  // for kSteepest. The floor keeps a box at the origin from vanishing among the smallest numbers.
-  double padding() const { return std::max(0x1p-20 * this->reach(), 1e-30); }
+  // of at most 2 H, which is as far as the ray runs within the box, by 4 H e, and |r| >= 1.
+  // Together 4 (R + H) e. The rest of 5 is for everything done in double, a million times finer,
+  // and for kSteepest. The floor keeps a box at the origin from vanishing among the smallest
+  // numbers.
+  double padding() const
+  {
+    const glm::dvec3 side = this->upper - this->lower;
+    const double half = 0.5 * std::max({ side.x, side.y, side.z });
+    return std::max(5.0 * 0x1p-24 * (this->reach() + half), 1e-30);
+  }
 };
 
 // An outer box, grown, as rays meet it.
