@@ -33,6 +33,14 @@ glm::dvec3 transformPoint(const glm::dmat4& m, const glm::vec3& p)
     m[0][2] * x + m[1][2] * y + m[2][2] * z + m[3][2] };
 }
 
+// a b - c d without cancellation: see the header.
+double differenceOfProducts(double a, double b, double c, double d)
+{
+  const double product = c * d;
+  const double rounding = std::fma(-c, d, product);
+  return std::fma(a, b, -product) + rounding;
+}
+
 } // namespace
 
 glm::dmat4 positionsToScene(const Part& part, const glm::dvec3& sceneOrigin)
@@ -54,23 +62,55 @@ Corners sceneCorners(const glm::vec3* positions, const glm::dmat4& positionsToSc
     transformPoint(positionsToScene, positions[1]), transformPoint(positionsToScene, positions[2]) };
 }
 
-// Twice the signed areas that the ray's foot spans with each edge, and the corners' depths.
+// The corners in the plane across the ray, where the ray's foot is zero, and their depths.
+struct ShearedRay::ShearedCorners
+{
+  double ax, ay, depthA;
+  double bx, by, depthB;
+  double cx, cy, depthC;
+};
+
+// Twice the signed areas that the ray's foot spans with each edge.
 struct ShearedRay::EdgeFunctions
 {
-  double a, b, c;          // opposite the corner of the same name
-  double depthA, depthB, depthC;
+  double a, b, c;      // opposite the corner of the same name
+  double products = 0; // sum of the magnitudes of the products that they are made of
+
+  explicit EdgeFunctions(const ShearedCorners& s)
+  {
+    const double a0 = s.cx * s.by, a1 = s.cy * s.bx;
+    const double b0 = s.ax * s.cy, b1 = s.ay * s.cx;
+    const double c0 = s.bx * s.ay, c1 = s.by * s.ax;
+    this->a = a0 - a1;
+    this->b = b0 - b1;
+    this->c = c0 - c1;
+    this->products = std::abs(a0) + std::abs(a1) + std::abs(b0) + std::abs(b1) + std::abs(c0) +
+      std::abs(c1);
+  }
 
   // Some of them zero counts for both sides.
-  bool inside() const
+  bool agree() const
   {
     return (a >= 0.0 && b >= 0.0 && c >= 0.0) || (a <= 0.0 && b <= 0.0 && c <= 0.0);
   }
 
+  // Takes them without cancellation where rounding may be much of what they are.
+  void refine(const ShearedCorners& s)
+  {
+    if (std::abs(a + b + c) >= 0.25 * products)
+    {
+      return;
+    }
+    this->a = differenceOfProducts(s.cx, s.by, s.cy, s.bx);
+    this->b = differenceOfProducts(s.ax, s.cy, s.ay, s.cx);
+    this->c = differenceOfProducts(s.bx, s.ay, s.by, s.ax);
+  }
+
   // The hit point as weighted mean of the corners; false when the triangle is seen edge-on.
-  bool solve(double scaleZ, TriangleHit& hit) const
+  bool solve(const ShearedCorners& s, double scaleZ, TriangleHit& hit) const
   {
     const double determinant = a + b + c;
-    hit.t = scaleZ * (a * depthA + b * depthB + c * depthC) / determinant;
+    hit.t = scaleZ * (a * s.depthA + b * s.depthB + c * s.depthC) / determinant;
     hit.u = b / determinant;
     hit.v = c / determinant;
     return std::isfinite(hit.t) && std::isfinite(hit.u) && std::isfinite(hit.v);
@@ -99,18 +139,15 @@ ShearedRay::ShearedRay(const glm::dvec3& origin, const glm::dvec3& direction)
   this->Valid = true;
 }
 
-ShearedRay::EdgeFunctions ShearedRay::edgeFunctions(const Corners& corners) const
+ShearedRay::ShearedCorners ShearedRay::shear(const Corners& corners) const
 {
   const glm::dvec3 a = corners.a - this->Origin;
   const glm::dvec3 b = corners.b - this->Origin;
   const glm::dvec3 c = corners.c - this->Origin;
-  const double ax = a[this->Kx] - this->ShearX * a[this->Kz];
-  const double ay = a[this->Ky] - this->ShearY * a[this->Kz];
-  const double bx = b[this->Kx] - this->ShearX * b[this->Kz];
-  const double by = b[this->Ky] - this->ShearY * b[this->Kz];
-  const double cx = c[this->Kx] - this->ShearX * c[this->Kz];
-  const double cy = c[this->Ky] - this->ShearY * c[this->Kz];
-  return { cx * by - cy * bx, ax * cy - ay * cx, bx * ay - by * ax, a[this->Kz], b[this->Kz],
+  return { a[this->Kx] - this->ShearX * a[this->Kz], a[this->Ky] - this->ShearY * a[this->Kz],
+    a[this->Kz], b[this->Kx] - this->ShearX * b[this->Kz],
+    b[this->Ky] - this->ShearY * b[this->Kz], b[this->Kz],
+    c[this->Kx] - this->ShearX * c[this->Kz], c[this->Ky] - this->ShearY * c[this->Kz],
     c[this->Kz] };
 }
 
@@ -120,14 +157,28 @@ bool ShearedRay::hitsTriangle(const Corners& corners, double tMaximum, TriangleH
   {
     return false;
   }
-  const EdgeFunctions edges = this->edgeFunctions(corners);
+  const ShearedCorners sheared = this->shear(corners);
+  EdgeFunctions edges(sheared);
+  if (!edges.agree())
+  {
+    return false; // nearly all; signs that are not zero are right
+  }
+  edges.refine(sheared);
   // `solve` refuses three zeros: their sum is zero too.
-  return edges.inside() && edges.solve(this->ScaleZ, hit) && hit.t > 0.0 && hit.t < tMaximum;
+  return edges.agree() && edges.solve(sheared, this->ScaleZ, hit) && hit.t > 0.0 &&
+    hit.t < tMaximum;
 }
 
 bool ShearedRay::hitsPlane(const Corners& corners, TriangleHit& hit) const
 {
-  return this->Valid && this->edgeFunctions(corners).solve(this->ScaleZ, hit);
+  if (!this->Valid)
+  {
+    return false;
+  }
+  const ShearedCorners sheared = this->shear(corners);
+  EdgeFunctions edges(sheared);
+  edges.refine(sheared);
+  return edges.solve(sheared, this->ScaleZ, hit);
 }
 
 bool triangleHit(const glm::dvec3& origin, const glm::dvec3& direction, const Corners& corners,

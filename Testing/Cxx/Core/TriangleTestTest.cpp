@@ -179,6 +179,92 @@ TEST(TriangleTest, NothingSlipsThroughAnEdge)
   EXPECT_EQ(leaks, 0);
 }
 
+// Triangles of a few steps of their coordinates, a million million of their own sizes away from the
+// ray: their edge functions are what rounding has left of differences of equals, and for some the
+// signs agree.
+TEST(TriangleTest, NothingFarFromATinyTriangleIsAHit)
+{
+  Random random(12);
+  int phantoms = 0;
+  const ShearedRay axis({ 0, 0, 1 }, { 0, 0, -1 });
+  for (int i = 0; i < 500000; ++i)
+  {
+    const glm::dvec3 place(random(0.5, 1.0), random(0.5, 1.0), random(-1.0, 0.0));
+    const auto corner = [&] { return place + random.inBox(4 * scenes::kDoubleRounding); };
+    const Corners c{ corner(), corner(), corner() };
+    TriangleHit hit;
+    phantoms += axis.hitsTriangle(c, kInfinity, hit);
+  }
+  EXPECT_EQ(phantoms, 0);
+}
+
+// Corners and rays on a lattice so fine that every number and product is exact: the kernel must say
+// just what whole numbers say, on edges, at corners and on the border of the triangle's box too, many
+// of which coincide here.
+TEST(TriangleTest, OnALatticeItEqualsWholeNumbers)
+{
+  Random random(13);
+  const double step = 0x1p-52;
+  int hits = 0, borders = 0, wrong = 0;
+  for (int i = 0; i < 500000; ++i)
+  {
+    int x[4], y[4]; // three corners and the ray
+    for (int k = 0; k < 4; ++k)
+    {
+      x[k] = static_cast<int>(random.below(9));
+      y[k] = static_cast<int>(random.below(9));
+    }
+    const auto at = [&](int k, double z) {
+      return glm::dvec3(1.0 + step * x[k], 1.0 + step * y[k], z);
+    };
+    const auto side = [&](int j, int k) {
+      return (x[j] - x[3]) * (y[k] - y[3]) - (y[j] - y[3]) * (x[k] - x[3]);
+    };
+    const int ab = side(0, 1), bc = side(1, 2), ca = side(2, 0);
+    const bool agree = (ab >= 0 && bc >= 0 && ca >= 0) || (ab <= 0 && bc <= 0 && ca <= 0);
+    const bool expected = agree && ab + bc + ca != 0;
+    TriangleHit hit;
+    const bool found = triangleHit(
+      at(3, 2.0), { 0, 0, -1 }, { at(0, 0.0), at(1, 0.0), at(2, 0.0) }, kInfinity, hit);
+    wrong += found != expected;
+    hits += expected;
+    borders += expected && (ab == 0 || bc == 0 || ca == 0);
+  }
+  EXPECT_EQ(wrong, 0);
+  EXPECT_GT(hits, 20000);
+  EXPECT_GT(borders, 5000);
+}
+
+// Needles across the ray, their two near corners a few roundings apart: what is hit must be where u and
+// v say, up to roundings of the needle's length, and not at some corner far from the ray.
+TEST(TriangleTest, NeedlesAreHitWhereTheRayIs)
+{
+  Random random(14);
+  const ShearedRay axis({ 0, 0, 1 }, { 0, 0, -1 });
+  int hits = 0;
+  double worst = 0.0;
+  for (int i = 0; i < 500000; ++i)
+  {
+    const glm::dvec3 tip(random(0.1, 1.0), random(0.1, 1.0), random(-1.0, 0.0));
+    const glm::dvec3 far = -random(0.1, 10.0) * tip; // opposite the ray's foot, up to rounding
+    const auto about = [&](const glm::dvec3& p) {
+      return glm::dvec3(p.x * (1.0 + random(-3, 3) * scenes::kDoubleRounding),
+        p.y * (1.0 + random(-3, 3) * scenes::kDoubleRounding), random(-1.0, 0.0));
+    };
+    const Corners c{ about(tip), about(tip), about(far) };
+    TriangleHit hit;
+    if (axis.hitsTriangle(c, kInfinity, hit))
+    {
+      const glm::dvec3 at = c.a + hit.u * (c.b - c.a) + hit.v * (c.c - c.a);
+      const double length = std::max(glm::length(glm::dvec2(tip)), glm::length(glm::dvec2(far)));
+      worst = std::max(worst, std::max(std::abs(at.x), std::abs(at.y)) / length);
+      ++hits;
+    }
+  }
+  EXPECT_LE(worst, 8 * scenes::kDoubleRounding);
+  EXPECT_GT(hits, 1000);
+}
+
 // Rays through a known point of a triangle. Sheared corners are off by a few roundings of the
 // largest distance M, edge functions by a few of M * M, and the quotients by that over the
 // determinant: 32 roundings are counted for all of it.
