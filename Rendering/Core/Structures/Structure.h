@@ -5,6 +5,7 @@
 
 #include "Rendering/Core/Snapshot.h"
 
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -19,6 +20,10 @@ struct Ray
   double tMaximum = std::numeric_limits<double>::infinity();
   // The triangle the ray leaves from: never reported as hit. Replaces a scene epsilon.
   TriangleId originTriangle = kNoTriangle;
+
+  // False when tMaximum is not a number or leaves no room for a hit. A quiet comparison: it raises no
+  // floating-point exception in hosts that trap them.
+  bool hasLength() const { return std::isgreater(this->tMaximum, 0.0); }
 };
 
 struct Hit
@@ -58,7 +63,8 @@ public:
   virtual StructureReport update(const Snapshot& snapshot) = 0;
 
   // The nearest hit with 0 < t < tMaximum among the parts visible to rays. Rays with a non-finite
-  // or zero direction are misses. Safe to call from several threads at once.
+  // or zero direction, a non-finite origin or a tMaximum that is not a number are misses. Safe to
+  // call from several threads at once.
   virtual Hit intersect(const Ray& ray) const = 0;
 
   // True when a part that casts shadows lies at 0 < t < tMaximum. Same rules.
