@@ -220,10 +220,12 @@ struct Refusals
   std::uint64_t degenerateTriangles = 0;// zero area: two equal corners or three in a line
   std::uint64_t emptyParts = 0;         // no input, no points or no triangle left
   std::uint64_t singularMatrices = 0;   // parts whose matrix cannot be inverted or is not finite
+  std::uint64_t outOfRangeParts = 0;    // parts whose bounds in the world exceed kLargestCoordinate
 
   std::uint64_t total() const
   {
-    return nonFinitePoints + invalidIndices + degenerateTriangles + emptyParts + singularMatrices;
+    return nonFinitePoints + invalidIndices + degenerateTriangles + emptyParts +
+      singularMatrices + outOfRangeParts;
   }
 };
 

@@ -153,6 +153,7 @@ std::string statisticsReport(const FrameStatistics& statistics, const Snapshot& 
       refused.number("degenerate_triangles", snapshot.refusals.degenerateTriangles);
       refused.number("empty_parts", snapshot.refusals.emptyParts);
       refused.number("singular_matrices", snapshot.refusals.singularMatrices);
+      refused.number("out_of_range_parts", snapshot.refusals.outOfRangeParts);
     }
     {
       Object left(report.key("left_to_vtk"));

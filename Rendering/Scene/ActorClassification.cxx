@@ -88,6 +88,8 @@ const char* describe(LeftToVTK reason)
       return "the matrix is projective";
     case LeftToVTK::SingularMatrix:
       return "the matrix cannot be inverted or is not finite";
+    case LeftToVTK::OutOfRange:
+      return "its bounds in the world are too large";
     case LeftToVTK::TooManyTriangles:
       return "the scene has too many triangles";
     case LeftToVTK::Texture:

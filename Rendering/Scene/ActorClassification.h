@@ -29,6 +29,7 @@ enum class LeftToVTK
   ClippingPlanes,
   ProjectiveMatrix,
   SingularMatrix,
+  OutOfRange, // its bounds in the world
   TooManyTriangles,
 
   // Its triangles are known, and seen in mirrors, but its picture is more than shaded triangles.

@@ -42,10 +42,7 @@ CellState inspect(const vtkIdType* ids, vtkIdType count, const Points& points)
     {
       return CellState::InvalidIndex;
     }
-    const glm::dvec3 magnitude = glm::abs(points[ids[i]]);
-    // Written so that NaN, which fails every comparison, is caught too.
-    if (!(magnitude.x <= kLargestCoordinate && magnitude.y <= kLargestCoordinate &&
-          magnitude.z <= kLargestCoordinate))
+    if (!isAdmissible(points[ids[i]]))
     {
       state = CellState::NonFinitePoint;
     }

@@ -4,11 +4,13 @@
 
 #include "vtkHybridScene.h"
 
+#include "Rendering/Core/Geometry/Coordinates.h"
 #include "Rendering/Core/Snapshot.h"
 #include "Rendering/Scene/ActorClassification.h"
 #include "Rendering/Scene/ActorPaths.h"
 #include "Rendering/Scene/AssemblyKeys.h"
 #include "Rendering/Scene/CameraExtraction.h"
+#include "Rendering/Scene/Complaints.h"
 #include "Rendering/Scene/GeometryCache.h"
 #include "Rendering/Scene/LightExtraction.h"
 #include "Rendering/Scene/MaterialExtraction.h"
@@ -24,8 +26,7 @@
 #include "vtkWeakPointer.h"
 
 #include <exception>
-#include <set>
-#include <sstream>
+#include <limits>
 #include <string>
 #include <unordered_map>
 #include <utility>
@@ -38,46 +39,6 @@ using namespace hrt::scene;
 
 namespace
 {
-
-//------------------------------------------------------------------------------
-// Adds ", 3 triangles with ..." to a list of complaints.
-void complain(std::ostream& text, std::uint64_t count, const char* what)
-{
-  if (count > 0)
-  {
-    text << (text.tellp() > 0 ? ", " : "") << count << (count == 1 ? " triangle " : " triangles ")
-         << what;
-  }
-}
-
-//------------------------------------------------------------------------------
-std::string describeProblems(const Extraction& extraction)
-{
-  std::ostringstream refused;
-  const TriangleReport& report = extraction.report;
-  complain(refused, report.nonFinitePoints, "with points that are not finite or beyond 1.844e18");
-  complain(refused, report.invalidIndices, "that name points that do not exist");
-  complain(refused, report.degenerateTriangles, "without area");
-
-  std::ostringstream text;
-  const char* separator = "";
-  if (refused.tellp() > 0)
-  {
-    text << "refused " << refused.str();
-    separator = "; ";
-  }
-  if (report.replacedNormals > 0)
-  {
-    text << separator << "normals that are zero or not finite were replaced by the face's in "
-         << report.replacedNormals << (report.replacedNormals == 1 ? " triangle" : " triangles");
-    separator = "; ";
-  }
-  if (!extraction.colorsComplete)
-  {
-    text << separator << "its scalars do not cover the data, coloured by its property";
-  }
-  return text.str();
-}
 
 //------------------------------------------------------------------------------
 void add(const TriangleReport& report, hrt::Refusals& sum)
@@ -93,23 +54,34 @@ bool hasOtherCells(vtkPolyData* input)
   return input->GetNumberOfVerts() > 0 || input->GetNumberOfLines() > 0;
 }
 
+// The box around all parts.
+struct SceneBox
+{
+  glm::dvec3 lower{ std::numeric_limits<double>::infinity() };
+  glm::dvec3 upper{ -std::numeric_limits<double>::infinity() };
+
+  // False, and nothing included, for a box that is not finite or too large for the engines.
+  bool include(const glm::dvec3& from, const glm::dvec3& to)
+  {
+    if (!hrt::isAdmissible(from) || !hrt::isAdmissible(to))
+    {
+      return false;
+    }
+    this->lower = glm::min(this->lower, from);
+    this->upper = glm::max(this->upper, to);
+    return true;
+  }
+};
+
 //------------------------------------------------------------------------------
 // The box of all parts and, in its centre, the origin that rays are traced relative to.
-void placeOrigin(hrt::Snapshot& snapshot)
+void placeOrigin(const SceneBox& box, hrt::Snapshot& snapshot)
 {
-  bool first = true;
-  for (const hrt::Part& part : snapshot.parts)
+  if (!snapshot.parts.empty())
   {
-    glm::dvec3 lower, upper;
-    hrt::worldBounds(part, lower, upper);
-    snapshot.boundsMin = first ? lower : glm::min(snapshot.boundsMin, lower);
-    snapshot.boundsMax = first ? upper : glm::max(snapshot.boundsMax, upper);
-    first = false;
-  }
-  if (!first)
-  {
-    // Halved before they are added, so that the sum cannot overflow.
-    snapshot.origin = 0.5 * snapshot.boundsMin + 0.5 * snapshot.boundsMax;
+    snapshot.boundsMin = box.lower;
+    snapshot.boundsMax = box.upper;
+    snapshot.origin = 0.5 * box.lower + 0.5 * box.upper;
   }
 }
 
@@ -128,6 +100,7 @@ struct Frame
   std::vector<const vtkProp*> viewProps;      // of the parts: what the renderer holds
   std::unordered_map<const vtkProp*, Verdict> verdicts;
   TriangleNumbers numbers;
+  SceneBox box;
 };
 
 //------------------------------------------------------------------------------
@@ -165,24 +138,29 @@ private:
   LeftToVTK CheckMatrix(const ActorPath& path, hrt::Part& part, Frame& frame);
   vtkPolyData* UpdateInput(vtkMapper* mapper, const ActorPath& path, Frame& frame, LeftToVTK& left);
   void AddLights(vtkRenderer* renderer, hrt::Snapshot& snapshot);
-  bool IsNews(std::uint64_t key, const std::string& text);
+  void Tell();
 
   vtkHybridScene* Self;
   vtkWeakPointer<vtkRenderer> LastRenderer;
   GeometryCache Geometries;
   AssemblyKeys Keys;
-
-  // Messages about states that last: given when the state begins, again when it comes back.
-  using Messages = std::set<std::pair<std::uint64_t, std::string>>;
-  Messages Told;
-  Messages Telling;
+  Complaints Warnings;
+  Complaints Errors;
 };
 
 //------------------------------------------------------------------------------
-bool vtkHybridScene::vtkInternals::IsNews(std::uint64_t key, const std::string& text)
+void vtkHybridScene::vtkInternals::Tell()
 {
-  this->Telling.emplace(key, text);
-  return this->Told.count({ key, text }) == 0;
+  const std::string warnings = this->Warnings.endUpdate();
+  if (!warnings.empty())
+  {
+    vtkWarningWithObjectMacro(this->Self, << warnings);
+  }
+  const std::string errors = this->Errors.endUpdate();
+  if (!errors.empty())
+  {
+    vtkErrorWithObjectMacro(this->Self, << errors);
+  }
 }
 
 //------------------------------------------------------------------------------
@@ -200,11 +178,8 @@ vtkPolyData* vtkHybridScene::vtkInternals::UpdateInput(
   if (!data)
   {
     ++frame.snapshot->refusals.emptyParts;
-    const std::string text = nameOf(path.actor) + ": the mapper has no input; nothing is drawn";
-    if (this->IsNews(path.key, text))
-    {
-      vtkWarningWithObjectMacro(this->Self, << text);
-    }
+    this->Warnings.addState(
+      path.key, nameOf(path.actor) + ": the mapper has no input; nothing is drawn");
     return nullptr;
   }
   vtkPolyData* input = vtkPolyData::SafeDownCast(data);
@@ -230,12 +205,8 @@ LeftToVTK vtkHybridScene::vtkInternals::CheckMatrix(
       break;
   }
   ++frame.snapshot->refusals.singularMatrices;
-  const std::string text =
-    part.name + ": its matrix is not finite or cannot be inverted; left out of ray tracing";
-  if (this->IsNews(path.key, text))
-  {
-    vtkWarningWithObjectMacro(this->Self, << text);
-  }
+  this->Warnings.addState(path.key,
+    part.name + ": its matrix is not finite or cannot be inverted; left out of ray tracing");
   return LeftToVTK::SingularMatrix;
 }
 
@@ -243,16 +214,21 @@ LeftToVTK vtkHybridScene::vtkInternals::CheckMatrix(
 LeftToVTK vtkHybridScene::vtkInternals::AddPart(
   const ActorPath& path, const hrt::Part& part, Frame& frame)
 {
+  glm::dvec3 lower, upper;
+  hrt::worldBounds(part, lower, upper);
+  if (!frame.box.include(lower, upper))
+  {
+    ++frame.snapshot->refusals.outOfRangeParts;
+    this->Errors.addState(path.key,
+      part.name + ": its bounds in the world are beyond 1.844e18; left out of ray tracing");
+    return LeftToVTK::OutOfRange;
+  }
   hrt::Part numbered = part;
   if (!frame.numbers.take(part.geometry->triangleCount(), numbered.firstTriangle))
   {
-    const std::string text = part.name +
-      ": the scene has more than 2^32 - 1 triangles with this "
-      "part's; left out of ray tracing";
-    if (this->IsNews(path.key, text))
-    {
-      vtkErrorWithObjectMacro(this->Self, << text);
-    }
+    this->Errors.addState(path.key,
+      part.name +
+        ": the scene has more than 2^32 - 1 triangles with this part's; left out of ray tracing");
     return LeftToVTK::TooManyTriangles;
   }
   frame.snapshot->parts.push_back(std::move(numbered));
@@ -290,7 +266,7 @@ LeftToVTK vtkHybridScene::vtkInternals::AddSurface(
   add(extraction->report, frame.snapshot->refusals);
   if (fresh && !extraction->clean())
   {
-    vtkWarningWithObjectMacro(this->Self, << part.name << ": " << describeProblems(*extraction));
+    this->Warnings.addEvent(part.name + ": " + describeProblems(*extraction));
   }
   part.geometry = extraction->geometry;
   if (part.geometry->triangleCount() == 0)
@@ -343,10 +319,7 @@ void vtkHybridScene::vtkInternals::AddLights(vtkRenderer* renderer, hrt::Snapsho
   LightRig rig = extractLights(renderer, snapshot.camera);
   for (const LightRig::Issue& issue : rig.issues)
   {
-    if (this->IsNews(issue.key, issue.text))
-    {
-      vtkWarningWithObjectMacro(this->Self, << issue.text);
-    }
+    this->Warnings.addState(issue.key, issue.text);
   }
   snapshot.lights = std::move(rig.lights);
   snapshot.singleHeadlight = rig.singleHeadlight;
@@ -357,7 +330,8 @@ void vtkHybridScene::vtkInternals::Update(vtkRenderer* renderer, int width, int 
 {
   Frame frame;
   hrt::Snapshot& snapshot = *frame.snapshot;
-  this->Telling.clear();
+  this->Warnings.abandonUpdate(); // one that an exception has ended
+  this->Errors.abandonUpdate();
   for (const ActorPath& path : actorPaths(renderer))
   {
     this->AddPath(path, frame);
@@ -367,7 +341,7 @@ void vtkHybridScene::vtkInternals::Update(vtkRenderer* renderer, int width, int 
   snapshot.camera = extractCamera(renderer, width, height);
   snapshot.background = extractBackground(renderer, snapshot.camera);
   this->AddLights(renderer, snapshot);
-  placeOrigin(snapshot);
+  placeOrigin(frame.box, snapshot);
 
   const bool sameRenderer = this->LastRenderer == renderer;
   this->Changes =
@@ -376,7 +350,7 @@ void vtkHybridScene::vtkInternals::Update(vtkRenderer* renderer, int width, int 
   this->LastRenderer = renderer;
   this->Geometries.endFrame();
   this->Keys.endFrame();
-  this->Told.swap(this->Telling);
+  this->Tell();
 }
 
 //------------------------------------------------------------------------------

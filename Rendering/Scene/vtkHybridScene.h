@@ -11,8 +11,10 @@
  * matrix, property, light or camera leaves the geometry's pointers as they are.
  *
  * Bad input is refused at this door: triangles that name missing points, have coordinates that are
- * not finite or too large, or have no area; parts whose matrix cannot be inverted. Each part is
- * warned about once, the sums are in hrt::Snapshot::refusals.
+ * not finite or beyond 1.844e18, or have no area; parts whose matrix cannot be inverted, or whose
+ * bounds in the world are beyond 1.844e18. Each part is told of once; all that is new in an update
+ * takes one warning and one error, which name the first three parts and count the others. The sums
+ * are in hrt::Snapshot::refusals.
  *
  * @sa
  * vtkHybridRayTracingPass vtkHybridMaterial

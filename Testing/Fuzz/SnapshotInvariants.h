@@ -2,6 +2,7 @@
 // the stress suite hold snapshots of garbage to it.
 #pragma once
 
+#include "Rendering/Core/Geometry/Coordinates.h"
 #include "Rendering/Core/Snapshot.h"
 
 #include <cmath>
@@ -114,6 +115,12 @@ inline std::string broken(const Snapshot& s)
     if (!isFinite(part.localToWorld) || !isFinite(glm::inverse(part.positionsToWorld())))
     {
       return "a matrix, or its inverse, is not finite";
+    }
+    glm::dvec3 lower, upper;
+    worldBounds(part, lower, upper);
+    if (!isAdmissible(lower) || !isAdmissible(upper))
+    {
+      return "a part lies beyond the largest coordinate";
     }
   }
   if (s.triangleCount != first)

@@ -80,6 +80,7 @@ def test_robots_are_traced_and_their_animation_rebuilds_nothing(render, data_fil
             "degenerate_triangles": WITHOUT_AREA,
             "empty_parts": WITHOUT_SURFACE,
             "singular_matrices": 0,
+            "out_of_range_parts": 0,
         }
         assert report["triangles"] == TRIANGLES - WITHOUT_AREA
         assert report["lights"] == 1

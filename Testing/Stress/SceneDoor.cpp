@@ -137,6 +137,7 @@ TEST_F(SceneDoor, Row08GarbageIsRefusedAndCounted)
     sum.degenerateTriangles += s.refusals.degenerateTriangles;
     sum.emptyParts += s.refusals.emptyParts;
     sum.singularMatrices += s.refusals.singularMatrices;
+    sum.outOfRangeParts += s.refusals.outOfRangeParts;
     for (const Engine& engine : kEngines)
     {
       const auto structure = engine.make();
@@ -150,10 +151,10 @@ TEST_F(SceneDoor, Row08GarbageIsRefusedAndCounted)
   }
   report(8, "scene door",
     "no crash in %zu scenes of 20 meshes; %zu triangles admitted; refused: %zu for points, %zu for "
-    "indices, %zu without area; %zu parts empty, %zu matrices singular",
+    "indices, %zu without area; %zu parts empty, %zu matrices singular, %zu parts out of range",
     count, admitted, std::size_t(sum.nonFinitePoints), std::size_t(sum.invalidIndices),
     std::size_t(sum.degenerateTriangles), std::size_t(sum.emptyParts),
-    std::size_t(sum.singularMatrices));
+    std::size_t(sum.singularMatrices), std::size_t(sum.outOfRangeParts));
   EXPECT_GT(sum.nonFinitePoints, 0u);
   EXPECT_GT(sum.invalidIndices, 0u);
   EXPECT_GT(sum.degenerateTriangles, 0u);

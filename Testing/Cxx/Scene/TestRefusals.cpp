@@ -1,5 +1,5 @@
 // Every kind of bad input: what is bad is counted and left out, the rest is kept, and the user is
-// told once, by a message that names the actor.
+// told once, by a message that names the actor, or the first of many.
 #include "SceneTest.h"
 
 #include <limits>
@@ -147,18 +147,45 @@ TEST_F(Refusals, AreToldAgainWhenTheDataChange)
   EXPECT_EQ(this->snapshot->refusals.degenerateTriangles, 2u);
 }
 
-TEST_F(Refusals, EachPartHasItsOwnMessage)
+TEST_F(Refusals, OneMessageSpeaksOfEachPart)
 {
   auto good = this->addMesh(makeSquare());
   auto bad = this->addMesh(makeMesh(this->points, { { 0, 1, 2 }, { 0, 0, 1 } }));
   auto worse = this->addMesh(makeMesh(this->points, { { 0, 1, 2 }, { 0, 1, 8 }, { 0, 1, 9 } }));
-  this->update();
-  ASSERT_EQ(this->messages.warnings.size(), 2u);
-  EXPECT_NE(this->messages.warnings[0].find(addressOf(bad)), std::string::npos);
-  EXPECT_NE(this->messages.warnings[1].find(addressOf(worse)), std::string::npos);
+  this->expectOneWarning(bad, addressOf(bad) + "): refused 1 triangle without area. ");
+  const std::string& text = this->messages.warnings[0];
+  EXPECT_NE(text.find(addressOf(worse) + "): refused 2 triangles that name"), std::string::npos);
+  EXPECT_EQ(text.find(addressOf(good)), std::string::npos);
+  EXPECT_EQ(text.find("more"), std::string::npos);
   EXPECT_EQ(this->snapshot->parts.size(), 3u);
   EXPECT_EQ(this->snapshot->refusals.degenerateTriangles, 1u);
   EXPECT_EQ(this->snapshot->refusals.invalidIndices, 2u);
+}
+
+TEST_F(Refusals, ManyBadPartsTakeOneLine)
+{
+  std::vector<vtkSmartPointer<vtkActor>> actors;
+  for (int i = 0; i < 8; ++i)
+  {
+    actors.push_back(this->addMesh(makeMesh(this->points, { { 0, 0, 1 } })));
+  }
+  actors.push_back(this->addMesh(makeSquare()));
+  actors.back()->SetScale(1, 1, 0);
+  this->expectOneWarning(actors[0], ". And 6 more of the like");
+  const std::string& text = this->messages.warnings[0];
+  for (std::size_t i = 0; i < actors.size(); ++i)
+  {
+    EXPECT_EQ(text.find(addressOf(actors[i])) != std::string::npos, i < 3) << i;
+  }
+  EXPECT_EQ(this->snapshot->refusals.emptyParts, 8u);
+  EXPECT_EQ(this->snapshot->refusals.singularMatrices, 1u);
+
+  // What comes later is told by itself, although it is like what was told before.
+  auto late = this->addMesh(makeMesh(this->points, { { 1, 1, 2 } }));
+  this->update();
+  ASSERT_EQ(this->messages.warnings.size(), 2u);
+  EXPECT_NE(this->messages.warnings[1].find(addressOf(late)), std::string::npos);
+  EXPECT_EQ(this->messages.warnings[1].find("more"), std::string::npos);
 }
 
 TEST_F(Refusals, PartsWithNothingLeftAreEmpty)
@@ -236,6 +263,55 @@ TEST_F(Refusals, AMatrixThatRecoversIsUsedAndWarnedAboutAgain)
   actor->SetScale(1, 0, 1);
   this->update();
   EXPECT_EQ(this->messages.warnings.size(), 2u);
+}
+
+TEST_F(Refusals, PartsThatTheirMatrixCarriesOutOfRange)
+{
+  const double beyond[][4] = { // translation, scale
+    { 1.9e18, 0, 0, 1 }, { 0, -1.9e18, 0, 1 }, { 0, 0, 0, 1.9e18 }, { 0, 0, 1.8e18, 1e17 } };
+  for (const auto& by : beyond)
+  {
+    SCOPED_TRACE(by[3]);
+    this->renderer->RemoveAllViewProps();
+    this->messages.errors.clear();
+    auto far = this->addMesh(makeMesh({ { 0, 0, 0 }, { 1, 0, 0 }, { 0, 1, 1 } }, { { 0, 1, 2 } }));
+    far->SetPosition(by[0], by[1], by[2]);
+    far->SetScale(by[3]);
+    auto good = this->addMesh(makeSquare());
+    for (int frame = 0; frame < 3; ++frame)
+    {
+      this->update();
+    }
+    EXPECT_TRUE(this->messages.warnings.empty());
+    ASSERT_EQ(this->messages.errors.size(), 1u);
+    EXPECT_NE(this->messages.errors[0].find(addressOf(far)), std::string::npos);
+    EXPECT_NE(this->messages.errors[0].find("beyond 1.844e18"), std::string::npos);
+    EXPECT_EQ(this->snapshot->refusals.outOfRangeParts, 1u);
+    EXPECT_EQ(this->snapshot->refusals.total(), 1u);
+    ASSERT_EQ(this->snapshot->parts.size(), 1u);
+    EXPECT_EQ(this->scene->GetProp(0), good.Get());
+    EXPECT_EQ(this->snapshot->boundsMax, glm::dvec3(1, 1, 0)) << "the scene's box is that of the rest";
+    EXPECT_FALSE(this->scene->IsDrawnByTracer(far));
+    EXPECT_STRNE(this->scene->GetReasonLeftToVTK(far), "");
+  }
+}
+
+TEST_F(Refusals, PartsUpToTheLimitAreKeptAndThoseThatComeBackAreToldOfAgain)
+{
+  auto actor = this->addMesh(makeSquare());
+  actor->SetScale(1.84e18);
+  EXPECT_EQ(this->update().parts.size(), 1u);
+  EXPECT_TRUE(this->messages.errors.empty());
+  const hrt::Geometry* const before = this->snapshot->parts[0].geometry.get();
+  actor->SetScale(1.85e18);
+  EXPECT_TRUE(this->update().parts.empty());
+  EXPECT_EQ(this->messages.errors.size(), 1u);
+  actor->SetScale(1.0);
+  ASSERT_EQ(this->update().parts.size(), 1u);
+  EXPECT_EQ(this->snapshot->parts[0].geometry.get(), before) << "not extracted again";
+  actor->SetScale(1.85e18);
+  this->update();
+  EXPECT_EQ(this->messages.errors.size(), 2u);
 }
 
 } // anonymous namespace
