@@ -2,7 +2,7 @@
 // delivers.
 #include "Testing/Stress/Stress.h"
 
-#include "Testing/Cxx/Reference/ExactPredicates.h"
+#include "Rendering/Core/Geometry/Coordinates.h"
 
 #include <cfenv>
 #include <cmath>
@@ -46,8 +46,6 @@ struct Spoiling
 {
   const char* name;
   void (*apply)(Ray& ray, scenes::Random& random);
-  // An ordered comparison with NaN raises "invalid" by IEEE 754, and a length is compared.
-  bool mayTrap = false;
 };
 
 glm::dvec3 spoilt(glm::dvec3 v, double by, scenes::Random& random)
@@ -71,7 +69,7 @@ const Spoiling kSpoilings[] = {
     [](Ray& r, scenes::Random&) { r.direction *= 0x1p-1060; } },
   { "no length", [](Ray& r, scenes::Random&) { r.tMaximum = 0.0; } },
   { "negative length", [](Ray& r, scenes::Random&) { r.tMaximum = -1.0; } },
-  { "NaN length", [](Ray& r, scenes::Random&) { r.tMaximum = kNaN; }, true },
+  { "NaN length", [](Ray& r, scenes::Random&) { r.tMaximum = kNaN; } },
 };
 
 std::size_t hitsOf(const Structure& structure, const std::vector<Ray>& rays)
@@ -161,15 +159,12 @@ TEST_P(Garbage, Row07SpoiltRaysTrapNowhere)
         ((raised & FE_OVERFLOW) != 0),
       bad.size());
     EXPECT_EQ(hits, 0u) << spoiling.name;
-    EXPECT_TRUE(raised == 0 || spoiling.mayTrap) << spoiling.name;
+    EXPECT_EQ(raised, 0) << spoiling.name;
   }
 }
 
 namespace
 {
-
-// The largest coordinate that the scene's door lets in; see TriangleExtraction.h.
-constexpr float kLargestAdmitted = 1.844e18f;
 
 // Random bits as a float; with `admitted`, only what the scene's door would let in.
 float randomBits(scenes::Random& random, bool admitted)
@@ -179,7 +174,7 @@ float randomBits(scenes::Random& random, bool admitted)
     const auto bits = static_cast<std::uint32_t>(random(0.0, 0x1p32));
     float value;
     std::memcpy(&value, &bits, sizeof value);
-    if (!admitted || std::abs(value) <= kLargestAdmitted)
+    if (!admitted || std::abs(value) <= static_cast<float>(kLargestCoordinate))
     {
       return value;
     }
@@ -211,37 +206,15 @@ Snapshot randomScene(scenes::Random& random, bool admitted)
 
 } // namespace
 
-namespace
-{
-
-Corners cornersOf(const Snapshot& s, TriangleId id)
-{
-  const Part& part = s.parts[s.partOf(id)];
-  return sceneCorners(
-    *part.geometry, positionsToScene(part, s.origin), id - part.firstTriangle);
-}
-
-// By exact arithmetic the ray meets the triangle, and there.
-bool isTrue(const Snapshot& s, const Ray& ray, const Hit& hit)
-{
-  constexpr double kAboutThere = 1e-3;
-  const Corners c = cornersOf(s, hit.triangle);
-  const auto m = reference::meet(ray.origin, ray.direction, c.a, c.b, c.c);
-  return reference::hits(m) &&
-    reference::isWithin(hit.t, m.depth, m.determinant, kAboutThere * hit.t);
-}
-
-} // namespace
-
-// What the door lets in: the same hits as by trying all triangles. A triangle that is smaller than the
-// rounding of its distance from the ray is one point to the kernel, which may take it for hit, anywhere; a
-// structure whose boxes leave it out is right to do so, and such phantoms are counted apart.
+// What the door lets in: the same hits as by trying all triangles. Among random bits nearly all triangles
+// are needles, or smaller than the rounding of their distance from the ray: a kernel that takes what
+// rounding has left of them for hits finds some that no structure's boxes hold.
 TEST_P(Garbage, Row08AdmittedBitsAreTracedRight)
 {
   const std::size_t count = scaled(1000.0, 30.0);
   constexpr int kRays = 16;
   scenes::Random random(8);
-  std::size_t wrong = 0, phantoms = 0, hits = 0, triangles = 0;
+  std::size_t wrong = 0, hits = 0, triangles = 0;
   for (std::size_t i = 0; i < count; ++i)
   {
     const Snapshot s = randomScene(random, true);
@@ -262,15 +235,12 @@ TEST_P(Garbage, Row08AdmittedBitsAreTracedRight)
       hits += expected.valid() ? 1 : 0;
       const bool same = sameHit(expected, found) &&
         structure->occluded(ray) == truth.occluded(ray);
-      const bool phantom = !same && expected.valid() && !isTrue(s, ray, expected);
-      phantoms += phantom ? 1 : 0;
-      wrong += same || phantom ? 0 : 1;
+      wrong += same ? 0 : 1;
     }
   }
   report(8, std::string("admitted bits ") + GetParam().name,
-    "%zu of %zu rays differ from brute force (0 allowed), and %zu from phantoms of it; %zu hits, %zu "
-    "scenes, %zu triangles",
-    wrong, count * kRays, phantoms, hits, count, triangles);
+    "%zu of %zu rays differ from brute force (0 allowed); %zu hits, %zu scenes, %zu triangles", wrong,
+    count * kRays, hits, count, triangles);
   EXPECT_GT(hits, count);
   EXPECT_EQ(wrong, 0u);
 }
