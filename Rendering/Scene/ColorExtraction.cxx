@@ -11,6 +11,7 @@
 #include "vtkUnsignedCharArray.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace hrt
 {
@@ -102,6 +103,17 @@ bool writeCorners(vtkUnsignedCharArray* colors, vtkMapper* mapper, vtkPolyData* 
 }
 
 //------------------------------------------------------------------------------
+// VTK gives a scalar that is not a number a place in the table's row of the NaN colour. A scalar or a
+// range that is infinite gives it coordinates that are no numbers themselves, and no texel: they are
+// given the same place.
+glm::vec2 readCoordinates(vtkFloatArray* coordinates, vtkIdType point)
+{
+  const float* st = coordinates->GetPointer(2 * point);
+  return std::isfinite(st[0]) && std::isfinite(st[1]) ? glm::vec2(st[0], st[1])
+                                                      : glm::vec2(0.5f, 1.0f);
+}
+
+//------------------------------------------------------------------------------
 // Scalars are interpolated before they are mapped: coordinates at the points into a table of
 // texels.
 bool writeLookup(vtkFloatArray* coordinates, vtkImageData* table, vtkPolyData* input,
@@ -129,8 +141,7 @@ bool writeLookup(vtkFloatArray* coordinates, vtkImageData* table, vtkPolyData* i
   {
     for (vtkIdType point : triangle.points)
     {
-      const float* st = coordinates->GetPointer(2 * point);
-      geometry.coordinates.emplace_back(st[0], st[1]);
+      geometry.coordinates.push_back(readCoordinates(coordinates, point));
     }
   }
   return true;

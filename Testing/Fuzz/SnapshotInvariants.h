@@ -76,9 +76,10 @@ inline std::string broken(const Geometry& g)
   {
     return "the lookup table has not its size";
   }
-  if (!areFinite(g.positions) || !areFinite(g.normals) || !isFinite(g.origin))
+  if (!areFinite(g.positions) || !areFinite(g.normals) || !areFinite(g.coordinates) ||
+    !isFinite(g.origin))
   {
-    return "a position, normal or origin is not finite";
+    return "a position, normal, coordinate or origin is not finite";
   }
   for (const glm::vec3& p : g.positions)
   {

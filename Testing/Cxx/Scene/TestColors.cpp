@@ -10,6 +10,7 @@
 #include "vtkPointData.h"
 #include "vtkUnsignedCharArray.h"
 
+#include <cmath>
 #include <limits>
 
 namespace
@@ -174,6 +175,34 @@ TEST_F(Colors, InterpolatedScalarsGiveCoordinatesAndTheTable)
     EXPECT_EQ(g.lookup[i], glm::u8vec4(c[0], c[1], c[2], c[3])) << i;
   }
   EXPECT_EQ(g.lookup[20], glm::u8vec4(26, 51, 77, 255)) << "the NaN colour, 0.1 0.2 0.3 in bytes";
+}
+
+// Infinity less infinity, or times nothing, is no number: what stands for it in VTK's own coordinates has
+// no texel. It is shown as VTK shows scalars that are not numbers.
+TEST_F(Colors, InfiniteScalarsAndRangesHaveTheColorOfNaN)
+{
+  const double infinity = std::numeric_limits<double>::infinity();
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  this->mapper->InterpolateScalarsBeforeMappingOn();
+  this->mesh->GetPointData()->SetScalars(scalars("s", { nan, infinity, 1, -infinity }));
+  for (double last : { infinity, 2.0 })
+  {
+    SCOPED_TRACE(last);
+    this->mapper->SetScalarRange(0.0, last);
+    const hrt::Geometry& g = this->onlyGeometry();
+    this->mapper->MapScalars(1.0);
+    vtkFloatArray* coordinates = this->mapper->GetColorCoordinates();
+    ASSERT_EQ(g.coordinates.size(), 6u);
+    const double* const ofNaN = coordinates->GetTuple2(0);
+    const glm::vec2 nanPlace(ofNaN[0], ofNaN[1]);
+    for (std::size_t i = 0; i < 6; ++i)
+    {
+      const double s = coordinates->GetComponent(this->byPoint[i], 0);
+      EXPECT_EQ(g.coordinates[i],
+        std::isnan(s) ? nanPlace : glm::vec2(s, coordinates->GetComponent(this->byPoint[i], 1)));
+    }
+    EXPECT_EQ(std::isnan(coordinates->GetComponent(1, 0)), last == infinity) << "what is tested";
+  }
 }
 
 TEST_F(Colors, TurnToCornersWhenInterpolationIsSwitchedOff)
