@@ -1,7 +1,8 @@
 """What a frame costs: the hybrid pass beside VTK's own renderer, frame by frame in turn in one window, so
 that a noisy machine disturbs both alike. Prints medians with quartiles and the ratio; writes JSON. Then
-interleaved rendering, time against error (interleaving.py), and the core by itself, where
-hrtCoreBenchmark was built: the kd-tree's build and rays beside Embree's.
+interleaved rendering, time against error (interleaving.py), what a step of the robots' animation costs the
+ray structures (updates.py), and the core by itself, where hrtCoreBenchmark was built: the kd-tree's build
+and rays beside Embree's.
 
     ./run bench [--quick] [--frames N] [--json FILE] [--no-core]
     ./run bench --paper [...]     the paper's tables and figure, see paper.py
@@ -20,6 +21,7 @@ import sys
 import time
 
 import interleaving
+import updates
 from measure import SIZE, WARM_UP, device_of, header, model_on_floor, models, timed, window_of
 from vtkhybrid import __version__, statistics, vtkHybridRayTracingPass
 from vtkmodules.vtkCommonCore import vtkVersion
@@ -116,8 +118,10 @@ def main():
                   flush=True)
     print("OpenGL:", results[0]["device"])
     interleaved = interleaving.run(frames)
+    updated = updates.run()
     if arguments.json:
-        figures = {**header(frames), "results": results, "interleaving": interleaved}
+        figures = {**header(frames), "results": results, "interleaving": interleaved,
+                   "structure_updates": updated}
         pathlib.Path(arguments.json).write_text(
             json.dumps(figures, indent=1) + "\n", encoding="utf-8")
     if not arguments.no_core:
