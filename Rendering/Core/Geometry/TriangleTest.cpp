@@ -33,15 +33,14 @@ glm::dvec3 transformPoint(const glm::dmat4& m, const glm::vec3& p)
     m[0][2] * x + m[1][2] * y + m[2][2] * z + m[3][2] };
 }
 
-// a b - c d without cancellation: see the header.
+} // namespace
+
 double differenceOfProducts(double a, double b, double c, double d)
 {
   const double product = c * d;
   const double rounding = std::fma(-c, d, product);
   return std::fma(a, b, -product) + rounding;
 }
-
-} // namespace
 
 glm::dmat4 positionsToScene(const Part& part, const glm::dvec3& sceneOrigin)
 {
@@ -97,7 +96,7 @@ struct ShearedRay::EdgeFunctions
   // Takes them without cancellation where rounding may be much of what they are.
   void refine(const ShearedCorners& s)
   {
-    if (std::abs(a + b + c) >= 0.25 * products)
+    if (std::abs(a + b + c) >= kCancelled * products)
     {
       return;
     }

@@ -62,6 +62,13 @@ Corners sceneCorners(
 // The same from copies of the triangle's three positions.
 Corners sceneCorners(const glm::vec3* positions, const glm::dmat4& positionsToScene);
 
+// a b - c d without cancellation (Kahan), off by at most 2 u of itself.
+double differenceOfProducts(double a, double b, double c, double d);
+
+// Edge functions are taken without cancellation where their sum is less than this share of the
+// magnitudes of the products that they are made of: d < M / 4 of the paragraph above.
+inline constexpr double kCancelled = 0.25;
+
 // A ray with the shear that makes it the z axis, to be tested against many triangles.
 class ShearedRay
 {

@@ -39,7 +39,7 @@ struct Search
   // floating-point exception, nor what follows when it is true.
   bool usable() const
   {
-    return isUsable(this->ray->origin, this->ray->direction) && !std::isnan(this->ray->tMaximum);
+    return this->ray->hasLength() && isUsable(this->ray->origin, this->ray->direction);
   }
   // True when the hit is the best now. The order of traversal must not show: of equal hits the
   // smallest number wins.

@@ -7,8 +7,10 @@
 
 #if defined(__GNUC__)
 #define HRT_INLINE inline __attribute__((always_inline))
+#define HRT_NEVER_INLINE __attribute__((noinline))
 #else
 #define HRT_INLINE inline
+#define HRT_NEVER_INLINE
 #endif
 
 namespace hrt
@@ -64,7 +66,9 @@ struct Axes
 struct Edges
 {
   double a, b, c, depthA, depthB, depthC;
+  double ax, ay, bx, by, cx, cy; // sheared corners
   bool inside;
+  bool cancelled; // to be refined before they mean anything
 
   // `at(corner, axis)`: the position; `from(k)`: the ray's origin, along the k-th of the axes.
   template <class At, class From>
@@ -83,17 +87,37 @@ struct Edges
     this->depthA = corner[0][2];
     this->depthB = corner[1][2];
     this->depthC = corner[2][2];
-    const double ax = corner[0][0] - shearX * this->depthA,
-                 ay = corner[0][1] - shearY * this->depthA;
-    const double bx = corner[1][0] - shearX * this->depthB,
-                 by = corner[1][1] - shearY * this->depthB;
-    const double cx = corner[2][0] - shearX * this->depthC,
-                 cy = corner[2][1] - shearY * this->depthC;
-    this->a = cx * by - cy * bx;
-    this->b = ax * cy - ay * cx;
-    this->c = bx * ay - by * ax;
-    this->inside = ((this->a >= 0.0) & (this->b >= 0.0) & (this->c >= 0.0)) |
+    this->ax = corner[0][0] - shearX * this->depthA;
+    this->ay = corner[0][1] - shearY * this->depthA;
+    this->bx = corner[1][0] - shearX * this->depthB;
+    this->by = corner[1][1] - shearY * this->depthB;
+    this->cx = corner[2][0] - shearX * this->depthC;
+    this->cy = corner[2][1] - shearY * this->depthC;
+    const double a0 = this->cx * this->by, a1 = this->cy * this->bx;
+    const double b0 = this->ax * this->cy, b1 = this->ay * this->cx;
+    const double c0 = this->bx * this->ay, c1 = this->by * this->ax;
+    this->a = a0 - a1;
+    this->b = b0 - b1;
+    this->c = c0 - c1;
+    this->inside = this->agree();
+    const double products = std::fabs(a0) + std::fabs(a1) + std::fabs(b0) + std::fabs(b1) +
+      std::fabs(c0) + std::fabs(c1);
+    this->cancelled =
+      this->inside & !(std::fabs(this->a + this->b + this->c) >= kCancelled * products);
+  }
+
+  HRT_INLINE bool agree() const
+  {
+    return ((this->a >= 0.0) & (this->b >= 0.0) & (this->c >= 0.0)) |
       ((this->a <= 0.0) & (this->b <= 0.0) & (this->c <= 0.0));
+  }
+
+  void refine()
+  {
+    this->a = differenceOfProducts(this->cx, this->by, this->cy, this->bx);
+    this->b = differenceOfProducts(this->ax, this->cy, this->ay, this->cx);
+    this->c = differenceOfProducts(this->bx, this->ay, this->by, this->ax);
+    this->inside = this->agree();
   }
 
   // The hit's t, u, v; false when it is not before `last` or is no number.
@@ -112,6 +136,33 @@ struct Edges
   }
 };
 
+// Of one lane, with all it takes.
+HRT_INLINE Edges edgesOf(const ExactLanes& lanes, const Rows& rows, const Axes& axes, unsigned int i)
+{
+  const double along = lanes.direction[axes.of[2]][i];
+  return Edges(
+    rows, [&](int corner, int axis) { return lanes.position[corner][axis][i]; },
+    [&](int k) { return lanes.origin[axes.of[k]][i]; }, lanes.direction[axes.of[0]][i] / along,
+    lanes.direction[axes.of[1]][i] / along);
+}
+
+// Decides the lanes again that have to be refined, one by one: they are rare.
+HRT_NEVER_INLINE unsigned int refineLanes(ExactLanes& lanes, const Rows& rows, const Axes& axes,
+  unsigned int cancelled, unsigned int hits)
+{
+  for (; cancelled != 0; cancelled &= cancelled - 1)
+  {
+    const auto i = static_cast<unsigned int>(__builtin_ctz(cancelled));
+    Edges edges = edgesOf(lanes, rows, axes, i);
+    edges.refine();
+    const bool hit = edges.inside &&
+      edges.solve(1.0 / lanes.direction[axes.of[2]][i], lanes.last[i], lanes.t[i], lanes.u[i],
+        lanes.v[i]);
+    hits = hit ? hits | 1u << i : hits & ~(1u << i);
+  }
+  return hits;
+}
+
 HRT_INLINE unsigned int hitLanes(ExactLanes& lanes, const glm::dmat4& m, int longest)
 {
   const Axes axes(longest);
@@ -122,7 +173,7 @@ HRT_INLINE unsigned int hitLanes(ExactLanes& lanes, const glm::dmat4& m, int lon
   const double* const directionX = lanes.direction[axes.of[0]];
   const double* const directionY = lanes.direction[axes.of[1]];
   const double* const directionZ = lanes.direction[axes.of[2]];
-  std::int64_t hits[kLanes];
+  std::int64_t hits[kLanes], cancelled[kLanes];
   for (unsigned int i = 0; i < kLanes; ++i)
   {
     const double along = directionZ[i];
@@ -132,16 +183,18 @@ HRT_INLINE unsigned int hitLanes(ExactLanes& lanes, const glm::dmat4& m, int lon
       directionX[i] / along, directionY[i] / along);
     double t, u, v;
     hits[i] = edges.solve(1.0 / along, lanes.last[i], t, u, v) ? 1 : 0;
+    cancelled[i] = edges.cancelled ? 1 : 0;
     lanes.t[i] = t;
     lanes.u[i] = u;
     lanes.v[i] = v;
   }
-  unsigned int result = 0;
+  unsigned int result = 0, again = 0;
   for (unsigned int i = 0; i < kLanes; ++i)
   {
     result |= static_cast<unsigned int>(hits[i]) << i;
+    again |= static_cast<unsigned int>(cancelled[i]) << i;
   }
-  return result;
+  return again == 0 ? result : refineLanes(lanes, rows, axes, again, result);
 }
 
 unsigned int hitNarrow(ExactLanes& lanes, const glm::dmat4& m, int longest)
@@ -171,9 +224,13 @@ bool exactHit(const ExactShear& shear, const glm::dvec3& origin, double last,
 {
   const Axes axes(shear.longest);
   const double from[3] = { origin[axes.of[0]], origin[axes.of[1]], origin[axes.of[2]] };
-  const Edges edges(
+  Edges edges(
     Rows(toScene, axes.of), [&](int corner, int axis) { return double(positions(corner, axis)); },
     [&](int k) { return from[k]; }, shear.x, shear.y);
+  if (edges.cancelled)
+  {
+    edges.refine();
+  }
   return edges.inside && edges.solve(shear.scale, last, hit.t, hit.u, hit.v);
 }
 

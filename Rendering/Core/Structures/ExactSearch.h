@@ -32,7 +32,7 @@ public:
   bool valid() const
   {
     return isUsable(this->TheRay.origin, this->TheRay.direction) &&
-      std::isgreater(this->TheRay.tMaximum, 0.0);
+      this->TheRay.hasLength();
   }
   const Hit& best() const { return this->Best; }
   // Up to here, inclusive, a hit could still be better.

@@ -101,7 +101,7 @@ KdTreeQuality KdTree::quality() const
   quality.blocks = this->Blocks.size();
   quality.bytes = this->Nodes.size() * sizeof(KdNode) +
     this->References.size() * sizeof(std::uint32_t) + this->Groups.size() * sizeof(KdCells) +
-    this->Blocks.size() * sizeof(KdBlock);
+    this->Blocks.size() * sizeof(TriangleBlock);
   quality.depthLimit = this->DepthLimit;
   quality.milliseconds = this->Milliseconds;
   if (quality.triangles > 0)

@@ -85,7 +85,7 @@ struct KdBox
 };
 
 struct KdCells;
-union KdBlock;
+struct TriangleBlock;
 
 // What the tree is worth, by the cost model that built it and by counting. "Expected" numbers are
 // those of a random line through the box that nothing stops: an upper bound of what rays need.
@@ -142,7 +142,7 @@ public:
   const std::vector<std::uint32_t>& references() const { return this->References; }
   // The same as rays go through it: the root's group is the first; none when there is no triangle.
   const HugePageVector<KdCells>& groups() const { return this->Groups; }
-  const HugePageVector<KdBlock>& blocks() const { return this->Blocks; }
+  const HugePageVector<TriangleBlock>& blocks() const { return this->Blocks; }
 
   // The largest absolute coordinate, the unit of all error bounds.
   double reach() const { return this->Reach; }
@@ -161,7 +161,7 @@ private:
   std::vector<KdNode> Nodes;
   std::vector<std::uint32_t> References;
   HugePageVector<KdCells> Groups;
-  HugePageVector<KdBlock> Blocks;
+  HugePageVector<TriangleBlock> Blocks;
   std::size_t Count = 0;             // triangles of the geometry
   KdBox Box;
   double Reach = 0.0;

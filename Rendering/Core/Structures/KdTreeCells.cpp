@@ -165,15 +165,15 @@ std::uint32_t CellGrouping::add(std::uint32_t node)
   return static_cast<std::uint32_t>(number);
 }
 
-void copyLane(KdBlock& block, std::uint32_t lane, std::uint32_t triangle, const glm::vec3* positions)
+void copyLane(TriangleBlock& block, std::uint32_t lane, std::uint32_t triangle, const glm::vec3* positions)
 {
-  block.lanes.number[lane] = triangle;
+  block.triangle[lane] = triangle;
   for (int corner = 0; corner < 3; ++corner)
   {
     const glm::vec3& position = positions[3 * std::size_t(triangle) + std::size_t(corner)];
     for (int axis = 0; axis < 3; ++axis)
     {
-      block.lanes.corner[corner][axis][lane] = position[axis];
+      block.corner[corner][axis][lane] = position[axis];
     }
   }
 }
@@ -186,11 +186,11 @@ HugePageVector<KdCells> groupCells(
   return std::move(CellGrouping(nodes, leaves).groups());
 }
 
-HugePageVector<KdBlock> copyTriangles(const std::vector<KdLeaf>& leaves,
+HugePageVector<TriangleBlock> copyTriangles(const std::vector<KdLeaf>& leaves,
   const std::vector<std::uint32_t>& references, const glm::vec3* positions)
 {
   const std::vector<std::uint32_t> numbers = blockNumbers(leaves);
-  HugePageVector<KdBlock> blocks(numbers.back());
+  HugePageVector<TriangleBlock> blocks(numbers.back());
   const auto copy = [&](const tbb::blocked_range<std::size_t>& range) {
     for (std::size_t i = range.begin(); i < range.end(); ++i)
     {

@@ -33,18 +33,6 @@ struct alignas(64) KdCells
   }
 };
 
-// Five cache lines: the sieve's block with the triangles' numbers in the geometry where it has padding. Both
-// members begin with the corners, which may be read through either.
-union KdBlock
-{
-  TriangleBlock triangles;
-  struct
-  {
-    float corner[3][3][TriangleBlock::kLanes];
-    std::uint32_t number[TriangleBlock::kLanes]; // unused lanes repeat a used one
-  } lanes;
-};
-static_assert(sizeof(KdBlock) == sizeof(TriangleBlock), "the numbers must fit the padding");
 static_assert(kdcost::kBlock == TriangleBlock::kLanes, "the cost counts these blocks");
 
 // A leaf that lists triangles, as the builder leaves it.
@@ -60,7 +48,7 @@ HugePageVector<KdCells> groupCells(
   const std::vector<KdNode>& nodes, const std::vector<KdLeaf>& leaves);
 
 // Copies the leaves' triangles.
-HugePageVector<KdBlock> copyTriangles(const std::vector<KdLeaf>& leaves,
+HugePageVector<TriangleBlock> copyTriangles(const std::vector<KdLeaf>& leaves,
   const std::vector<std::uint32_t>& references, const glm::vec3* positions);
 
 } // namespace hrt

@@ -35,17 +35,17 @@ struct ScaledRay
 };
 
 // Asks the exact kernel about a block's lane.
-inline bool isHit(ExactSearch& search, const Instance& instance, const KdBlock& block, int lane)
+inline bool isHit(ExactSearch& search, const Instance& instance, const TriangleBlock& block, int lane)
 {
   glm::vec3 positions[3];
   for (int corner = 0; corner < 3; ++corner)
   {
     for (int axis = 0; axis < 3; ++axis)
     {
-      positions[corner][axis] = block.lanes.corner[corner][axis][lane];
+      positions[corner][axis] = block.corner[corner][axis][lane];
     }
   }
-  return search.test(instance.placed, block.lanes.number[lane], positions);
+  return search.test(instance.placed, block.triangle[lane], positions);
 }
 
 // Go through the lanes that may be hit and return the t up to which the search goes on; below zero ends it.
@@ -55,7 +55,7 @@ struct NearestTest
 
   template <class Counters>
   double operator()(
-    const Instance& instance, const KdBlock& block, const SieveResult& lanes, Counters& counters)
+    const Instance& instance, const TriangleBlock& block, const SieveResult& lanes, Counters& counters)
   {
     for (unsigned int left = lanes.possible; left != 0; left &= left - 1)
     {
@@ -74,14 +74,14 @@ struct AnyTest
 
   template <class Counters>
   double operator()(
-    const Instance& instance, const KdBlock& block, const SieveResult& lanes, Counters& counters)
+    const Instance& instance, const TriangleBlock& block, const SieveResult& lanes, Counters& counters)
   {
     for (unsigned int left = lanes.possible; left != 0 && !this->found; left &= left - 1)
     {
       const int lane = lowestBit(left);
       if (lanes.sure >> lane & 1u)
       {
-        this->found = !this->search.isOrigin(instance.placed, block.lanes.number[lane]);
+        this->found = !this->search.isOrigin(instance.placed, block.triangle[lane]);
         continue;
       }
       counters.candidate();
@@ -96,7 +96,7 @@ struct AnyTest
 template <class Candidates, class Counters>
 void askAll(const KdTree& tree, Candidates&& candidates, Counters& counters)
 {
-  for (const KdBlock& block : tree.blocks())
+  for (const TriangleBlock& block : tree.blocks())
   {
     SieveResult all;
     all.possible = (1u << TriangleBlock::kLanes) - 1;
@@ -148,7 +148,7 @@ void searchInstance(const Instance& instance, const ScaledRay& ray, double origi
 {
   const KdTree& tree = *instance.triangles->tree;
   const double end = search.end() * ray.perT;
-  const auto candidates = [&](const KdBlock& block, const SieveResult& lanes) {
+  const auto candidates = [&](const TriangleBlock& block, const SieveResult& lanes) {
     return test(instance, block, lanes, counters) * ray.perT;
   };
   const glm::dvec3 translation(instance.placed.toScene[3]);

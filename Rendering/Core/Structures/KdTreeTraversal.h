@@ -19,6 +19,7 @@
 
 #include "Rendering/Core/Structures/KdTree.h"
 #include "Rendering/Core/Structures/KdTreeCells.h"
+#include "Rendering/Core/Structures/TriangleSieve.h"
 
 #include <algorithm>
 #include <cmath>
@@ -138,11 +139,11 @@ public:
         }
       }
       counters.leaf(cell.blocks);
-      const KdBlock* const blocks = tree.blocks().data() + (cell.child & ~KdCells::kLeaf);
+      const TriangleBlock* const blocks = tree.blocks().data() + (cell.child & ~KdCells::kLeaf);
       for (std::uint32_t i = 0; i < cell.blocks; ++i)
       {
         counters.blockTest();
-        const SieveResult lanes = sieve(blocks[i].triangles, ray, this->Slack);
+        const SieveResult lanes = sieve(blocks[i], ray, this->Slack);
         if (lanes.possible != 0)
         {
           const double t = candidates(blocks[i], lanes);

@@ -128,7 +128,7 @@ bool blockedAt(const KdTree& tree, std::size_t group, const glm::dvec3& point, s
     }
     for (std::uint32_t i = 0; inside && cells.isLeaf(lane) && i < cells.blocks[lane]; ++i)
     {
-      const auto& numbers = tree.blocks()[cells.firstBlock(lane) + i].lanes.number;
+      const auto& numbers = tree.blocks()[cells.firstBlock(lane) + i].triangle;
       found = found || std::find(std::begin(numbers), std::end(numbers), triangle) != std::end(numbers);
     }
   }
@@ -235,13 +235,13 @@ TEST(KdTreeBuild, BlocksHoldTheListedTriangles)
     SCOPED_TRACE(name);
     const auto tree = KdTree::build(*mesh);
     Triangles listed = tree->references(), held;
-    for (const KdBlock& block : tree->blocks())
+    for (const TriangleBlock& block : tree->blocks())
     {
       // Unused lanes, at the end, repeat the last triangle.
       std::uint32_t before = ~0u;
       for (int lane = 0; lane < TriangleBlock::kLanes; ++lane)
       {
-        const std::uint32_t number = block.lanes.number[lane];
+        const std::uint32_t number = block.triangle[lane];
         if (number != before)
         {
           held.push_back(number);
@@ -250,7 +250,7 @@ TEST(KdTreeBuild, BlocksHoldTheListedTriangles)
         for (int k = 0; k < 9; ++k)
         {
           const glm::vec3& p = mesh->positions[3 * std::size_t(number) + std::size_t(k / 3)];
-          ASSERT_EQ(std::memcmp(&block.lanes.corner[k / 3][k % 3][lane], &p[k % 3], 4), 0);
+          ASSERT_EQ(std::memcmp(&block.corner[k / 3][k % 3][lane], &p[k % 3], 4), 0);
         }
       }
     }
@@ -283,7 +283,7 @@ TEST(KdTreeBuild, ExpectedVisitsAreWhatLinesTake)
     {
       ++lines;
       ray.traverse(
-        *tree, kInfinity, [](const KdBlock&, const SieveResult&) { return kInfinity; }, counters);
+        *tree, kInfinity, [](const TriangleBlock&, const SieveResult&) { return kInfinity; }, counters);
     }
   }
   ASSERT_GT(lines, 20000);
