@@ -150,6 +150,32 @@ bool Hierarchy::refit(const std::vector<glm::vec3>& positions)
     }
   }
   this->fit();
+  return this->isGoodEnough();
+}
+
+bool Hierarchy::refit(const std::vector<glm::dmat4>& placements)
+{
+  if (!this->Complete || this->OwnPositions.empty())
+  {
+    return false;
+  }
+  for (std::size_t i = 0; i < this->OwnPositions.size(); ++i)
+  {
+    const std::uint32_t member = this->Members.empty() ? 0 : this->Members[i];
+    const Corners c = sceneCorners(this->OwnPositions[i].data(), placements[member]);
+    const std::array<glm::vec3, 3> corner{ glm::vec3(c.a), glm::vec3(c.b), glm::vec3(c.c) };
+    if (!isAdmissible(corner))
+    {
+      return false;
+    }
+    this->setLane(i / kLanes, static_cast<int>(i % kLanes), corner);
+  }
+  this->fit();
+  return this->isGoodEnough();
+}
+
+bool Hierarchy::isGoodEnough() const
+{
   return this->Tree.cost() <= kWorstDecay * this->CostWhenBuilt;
 }
 

@@ -44,6 +44,9 @@ public:
   // it holds not all of them, or has become so much worse than it was when built, that it is better
   // built anew.
   bool refit(const std::vector<glm::vec3>& positions);
+  // The same for merged parts that have moved: `placements` map each member's own positions to the
+  // hierarchy's coordinates.
+  bool refit(const std::vector<glm::dmat4>& placements);
 
   // The exact test of the lanes of a block that the sieve has let pass. `nearest`: true when one of
   // them is the search's best hit now. `any`: true when one is hit by a shadow ray.
@@ -66,6 +69,7 @@ public:
 private:
   void setLane(std::size_t block, int lane, const std::array<glm::vec3, 3>& corner);
   void fit();
+  bool isGoodEnough() const;
   bool test(std::size_t block, int lane, const Member& member, Search& search, Hit& hit) const;
 
   WideTree Tree;

@@ -3,6 +3,8 @@
 
 #include "Rendering/Core/Geometry/TriangleTest.h"
 
+#include <utility>
+
 namespace hrt
 {
 namespace embree
@@ -37,6 +39,7 @@ void MergedHierarchy::build(
 {
   this->anchor = snapshot.origin;
   this->parts.clear();
+  this->versions.clear();
   Triangles triangles;
   for (std::size_t i = 0; i < snapshot.parts.size(); ++i)
   {
@@ -45,11 +48,35 @@ void MergedHierarchy::build(
       triangles.add(
         snapshot.parts[i], this->anchor, static_cast<std::uint32_t>(this->parts.size()));
       this->parts.push_back(i);
+      this->versions.push_back(snapshot.parts[i].geometry->version);
     }
   }
   this->hierarchy = triangles.placed.empty()
     ? nullptr
-    : std::make_shared<const Hierarchy>(device, triangles.placed, triangles.positions);
+    : std::make_shared<Hierarchy>(device, triangles.placed, triangles.positions);
+}
+
+bool MergedHierarchy::refit(const Snapshot& snapshot, const Grouping& grouping, Place place)
+{
+  std::vector<std::size_t> now;
+  std::vector<std::uint64_t> nowVersions;
+  std::vector<glm::dmat4> placements;
+  for (std::size_t i = 0; i < snapshot.parts.size(); ++i)
+  {
+    if (grouping.parts[i].place == place)
+    {
+      now.push_back(i);
+      nowVersions.push_back(snapshot.parts[i].geometry->version);
+      placements.push_back(positionsToScene(snapshot.parts[i], snapshot.origin));
+    }
+  }
+  if (!this->hierarchy || nowVersions != this->versions || !this->hierarchy->refit(placements))
+  {
+    return false;
+  }
+  this->anchor = snapshot.origin;
+  this->parts = std::move(now);
+  return true;
 }
 
 void MergedHierarchy::follow(const Grouping& grouping, Place place, std::size_t earlierCount)

@@ -16,13 +16,18 @@ namespace embree
 
 struct MergedHierarchy
 {
-  std::shared_ptr<const Hierarchy> hierarchy; // null: nothing merged
+  std::shared_ptr<Hierarchy> hierarchy; // null: nothing merged
   // The scene's origin when it was built, to which its coordinates are relative.
   glm::dvec3 anchor{ 0.0 };
   std::vector<std::size_t> parts; // of the last snapshot, in the order of the members; or kNewPart
+  std::vector<std::uint64_t> versions; // of their geometries
 
   // From the parts that are grouped in `place`.
   void build(Device& device, const Snapshot& snapshot, const Grouping& grouping, Place place);
+
+  // Moves the hierarchy with its parts; false when other parts are grouped in `place` than were, or
+  // when it is better built anew.
+  bool refit(const Snapshot& snapshot, const Grouping& grouping, Place place);
 
   // The members' numbers in a later snapshot; those that have left get none.
   void follow(const Grouping& grouping, Place place, std::size_t earlierCount);

@@ -83,6 +83,11 @@ struct EmbreeStructure::Implementation
   void updateMerged(embree::MergedHierarchy& hierarchy, bool anew, Place place,
     const Snapshot& snapshot, const Grouping& now, StructureReport& report)
   {
+    if (anew && place == Place::Flat && hierarchy.refit(snapshot, now, place))
+    {
+      ++report.refitted;
+      return;
+    }
     if (anew)
     {
       hierarchy.build(this->device, snapshot, now, place);
@@ -113,9 +118,29 @@ struct EmbreeStructure::Implementation
     return true;
   }
 
+  // Whether the parts that stand alone are those of the last update, with the same triangles.
+  bool ownsAreThoseOf(const Grouping& now) const
+  {
+    const auto alone = [](const GroupedPart& part) { return part.place == Place::Alone; };
+    return std::count_if(now.parts.begin(), now.parts.end(), alone) ==
+      std::count_if(this->grouping.parts.begin(), this->grouping.parts.end(), alone) &&
+      std::all_of(now.parts.begin(), now.parts.end(),
+        [&](const GroupedPart& part)
+        {
+          return !alone(part) ||
+            (part.before != kNewPart && alone(this->grouping.parts[part.before]) &&
+              this->grouping.parts[part.before].version == part.version);
+        });
+  }
+
   // The hierarchies of the parts that stand alone: taken over, refitted, or built.
   void updateOwns(const Snapshot& snapshot, const Grouping& now, StructureReport& report)
   {
+    if (this->ownsAreThoseOf(now))
+    {
+      report.reused += this->owns.size();
+      return;
+    }
     Owns current;
     const auto forEachMissing = [&](auto action)
     {
@@ -157,6 +182,8 @@ struct EmbreeStructure::Implementation
   {
     std::vector<embree::Placed> placed;
     std::vector<embree::Member> members;
+    placed.reserve(snapshot.parts.size() + 2);
+    members.reserve(snapshot.parts.size() + this->merged.parts.size());
     this->placeMerged(this->merged, snapshot, placed, members);
     this->placeMerged(this->flat, snapshot, placed, members);
     for (std::size_t i = 0; i < snapshot.parts.size(); ++i)

@@ -66,6 +66,7 @@ public:
 
 private:
   void rebuild(Device& device);
+  void fit();
 
   std::vector<Placed> Parts;
   std::vector<Member> Members;
@@ -73,6 +74,7 @@ private:
   EntryBox Entry;
   WideTree Tree;
   std::vector<std::uint32_t> PartOfLeaf;
+  double CostWhenBuilt = 0.0;
 };
 
 } // namespace embree

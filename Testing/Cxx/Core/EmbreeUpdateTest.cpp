@@ -245,6 +245,50 @@ TEST(EmbreeUpdate, BuildsOnlyWhatIsNew)
 }
 
 // Matrices that invert badly, beside parts that move: those must not lose hits either.
+// Parts too small for a hierarchy each share a flat one. While they move on it is refitted, and the
+// upper level with it; thrown together it is built anew, as when one of them goes.
+TEST(EmbreeUpdate, TinyMovingPartsAreRefittedUntilTheyDecay)
+{
+  Random random(77);
+  Snapshot s;
+  scenes::addPart(s, wave(0.0), at({ 0, 0, -1 }));
+  for (int i = 0; i < 60; ++i)
+  {
+    const glm::vec3 a(random(0, 0.4), 0, 0), b(0, random(0.1, 0.4), 0.1f);
+    scenes::addPart(s, scenes::makeGeometry({ glm::vec3(0.0f), a + b, b }),
+      at({ (i % 8) * 0.5 - 2, (i / 8) * 0.5 - 2, 0 }));
+  }
+  EmbreeStructure embree;
+  embree.update(s);
+  int refitted = 0, built = 0;
+  for (int step = 0; step < 12; ++step)
+  {
+    for (std::size_t i = 1; i < s.parts.size(); ++i)
+    {
+      s.parts[i].localToWorld = glm::rotate(s.parts[i].localToWorld, 0.1, { 1, double(i % 3), 3 });
+      if (step == 8)
+      {
+        s.parts[i].localToWorld[3] = glm::dvec4(random(-2, 2), random(-2, 2),
+          random(-2, 2), 1.0);
+      }
+    }
+    if (step == 10)
+    {
+      s.parts.pop_back();
+      renumber(s);
+    }
+    const StructureReport report = embree.update(s);
+    EXPECT_TRUE(report.partsRebuilt) << step;
+    refitted += static_cast<int>(report.refitted);
+    built += static_cast<int>(report.built);
+    EXPECT_EQ(report.built + report.refitted, 1u) << step;
+    EXPECT_TRUE(report.built == 1 || (step != 0 && step != 8 && step != 10)) << step;
+    EXPECT_EQ(wrongAgainstBruteForce(embree, s, random, 500), 0) << step;
+  }
+  EXPECT_EQ(refitted, 9);
+  EXPECT_EQ(built, 3);
+}
+
 TEST(EmbreeUpdate, SkewedPartsEqualBruteForce)
 {
   Random random(35);
