@@ -27,6 +27,43 @@
 
 vtkStandardNewMacro(vtkHybridRayTracingPass);
 
+namespace
+{
+
+// The values of each choice, from 0 on, by the names that its setters have.
+using Names = std::vector<const char*>;
+const Names kVisibilities{ "ItemBuffer", "DirectRendering", "RayCasting" };
+const Names kShadings{ "GPU", "CPU" };
+const Names kAccelerators{ "Embree", "KdTree" };
+const Names kShadowModes{ "Off", "ShadowMaps", "Exact" };
+const Names kPipelined{ "Never", "InAnimations", "Automatic" };
+const Names kMultisampling{ "Off", "Clamp", "Lazy3x3", "Lazy5x5", "Full3x3", "Full5x5" };
+
+// Sets a choice, or says what there is to choose from. Returns whether it has changed.
+bool choose(vtkObject* pass, const char* setter, const Names& names, int value, int& setting)
+{
+  if (value < 0 || value >= static_cast<int>(names.size()))
+  {
+    std::string all;
+    for (std::size_t i = 0; i < names.size(); ++i)
+    {
+      all += std::string(i == 0 ? "" : i + 1 < names.size() ? ", " : " and ") + names[i] + " (" +
+        std::to_string(i) + ")";
+    }
+    vtkErrorWithObjectMacro(pass, << setter << ": " << value << " is none of " << all);
+    return false;
+  }
+  if (setting == value)
+  {
+    return false;
+  }
+  setting = value;
+  pass->Modified();
+  return true;
+}
+
+} // namespace
+
 //------------------------------------------------------------------------------
 class vtkHybridRayTracingPass::vtkInternals
 {
@@ -66,20 +103,16 @@ vtkHybridRayTracingPass::~vtkHybridRayTracingPass() = default;
 void vtkHybridRayTracingPass::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
-  const char* const visibilities[] = { "ItemBuffer", "DirectRendering", "RayCasting" };
-  os << indent << "Visibility: " << visibilities[this->Visibility] << "\n";
-  os << indent << "PrimaryShading: " << (this->PrimaryShading == GPU ? "GPU" : "CPU") << "\n";
-  os << indent << "Accelerator: " << (this->Accelerator == Embree ? "Embree" : "KdTree") << "\n";
-  const char* const shadowModes[] = { "Off", "ShadowMaps", "Exact" };
-  os << indent << "ShadowMode: " << shadowModes[this->ShadowMode] << "\n";
+  os << indent << "Visibility: " << kVisibilities[this->Visibility] << "\n";
+  os << indent << "PrimaryShading: " << kShadings[this->PrimaryShading] << "\n";
+  os << indent << "Accelerator: " << kAccelerators[this->Accelerator] << "\n";
+  os << indent << "ShadowMode: " << kShadowModes[this->ShadowMode] << "\n";
   os << indent << "ShadowMapResolution: " << this->ShadowMapResolution << "\n";
   os << indent << "Reflections: " << (this->Reflections ? "On" : "Off") << "\n";
   os << indent << "Refractions: " << (this->Refractions ? "On" : "Off") << "\n";
   os << indent << "MaximumDepth: " << this->MaximumDepth << "\n";
-  const char* const pipelined[] = { "Never", "InAnimations", "Automatic" };
-  os << indent << "Pipelined: " << pipelined[this->Pipelined] << "\n";
-  const char* const modes[] = { "Off", "Clamp", "Lazy3x3", "Lazy5x5", "Full3x3", "Full5x5" };
-  os << indent << "Multisampling: " << modes[this->Multisampling] << "\n";
+  os << indent << "Pipelined: " << kPipelined[this->Pipelined] << "\n";
+  os << indent << "Multisampling: " << kMultisampling[this->Multisampling] << "\n";
   os << indent << "Interleave: " << this->Interleave << "\n";
   os << indent << "InterleaveErrorControl: " << (this->InterleaveErrorControl ? "On" : "Off")
      << "\n";
@@ -96,131 +129,39 @@ void vtkHybridRayTracingPass::PrintSelf(ostream& os, vtkIndent indent)
 //------------------------------------------------------------------------------
 void vtkHybridRayTracingPass::SetVisibility(int visibility)
 {
-  if (visibility < ItemBuffer || visibility > RayCasting)
-  {
-    vtkErrorMacro("SetVisibility: " << visibility
-                                    << " is none of ItemBuffer (0), DirectRendering (1) and "
-                                       "RayCasting (2)");
-    return;
-  }
-  if (this->Visibility != visibility)
-  {
-    this->Visibility = visibility;
-    this->Modified();
-  }
+  choose(this, "SetVisibility", kVisibilities, visibility, this->Visibility);
 }
 
 //------------------------------------------------------------------------------
 void vtkHybridRayTracingPass::SetPrimaryShading(int shading)
 {
-  if (shading != GPU && shading != CPU)
-  {
-    vtkErrorMacro("SetPrimaryShading: " << shading << " is neither GPU (0) nor CPU (1)");
-    return;
-  }
-  if (this->PrimaryShading != shading)
-  {
-    this->PrimaryShading = shading;
-    this->Modified();
-  }
+  choose(this, "SetPrimaryShading", kShadings, shading, this->PrimaryShading);
 }
 
 //------------------------------------------------------------------------------
 void vtkHybridRayTracingPass::SetAccelerator(int accelerator)
 {
-  if (accelerator != Embree && accelerator != KdTree)
-  {
-    vtkErrorMacro("SetAccelerator: " << accelerator << " is neither Embree (0) nor KdTree (1)");
-    return;
-  }
-  if (this->Accelerator != accelerator)
-  {
-    this->Accelerator = accelerator;
-    this->Modified();
-  }
+  choose(this, "SetAccelerator", kAccelerators, accelerator, this->Accelerator);
 }
 
 //------------------------------------------------------------------------------
 void vtkHybridRayTracingPass::SetShadowMode(int mode)
 {
-  if (mode < ShadowsOff || mode > Exact)
-  {
-    vtkErrorMacro("SetShadowMode: " << mode
-                                    << " is none of ShadowsOff (0), ShadowMaps (1) and Exact (2)");
-    return;
-  }
-  if (this->ShadowMode != mode)
-  {
-    this->ShadowMode = mode;
-    this->Modified();
-  }
-}
-
-//------------------------------------------------------------------------------
-void vtkHybridRayTracingPass::SetShadowMapResolution(int resolution)
-{
-  const int clamped = std::min(std::max(resolution, 16), 16384);
-  if (this->ShadowMapResolution != clamped)
-  {
-    this->ShadowMapResolution = clamped;
-    this->Modified();
-  }
-}
-
-//------------------------------------------------------------------------------
-void vtkHybridRayTracingPass::SetMaximumDepth(int depth)
-{
-  const int clamped = std::min(std::max(depth, 0), 32);
-  if (this->MaximumDepth != clamped)
-  {
-    this->MaximumDepth = clamped;
-    this->Modified();
-  }
+  choose(this, "SetShadowMode", kShadowModes, mode, this->ShadowMode);
 }
 
 //------------------------------------------------------------------------------
 void vtkHybridRayTracingPass::SetPipelined(int pipelined)
 {
-  if (pipelined < PipelinedNever || pipelined > PipelinedAutomatic)
-  {
-    vtkErrorMacro("SetPipelined: " << pipelined
-                                   << " is none of PipelinedNever (0), PipelinedInAnimations (1) and "
-                                      "PipelinedAutomatic (2)");
-    return;
-  }
-  if (this->Pipelined != pipelined)
-  {
-    this->Pipelined = pipelined;
-    this->Modified();
-  }
+  choose(this, "SetPipelined", kPipelined, pipelined, this->Pipelined);
 }
 
 //------------------------------------------------------------------------------
 void vtkHybridRayTracingPass::SetMultisampling(int mode)
 {
-  if (mode < MultisamplingOff || mode > Full5x5)
+  if (choose(this, "SetMultisampling", kMultisampling, mode, this->Multisampling))
   {
-    vtkErrorMacro("SetMultisampling: " << mode
-                                       << " is none of MultisamplingOff (0), Clamp (1), Lazy3x3 "
-                                          "(2), Lazy5x5 (3), Full3x3 (4) and Full5x5 (5)");
-    return;
-  }
-  if (this->Multisampling != mode)
-  {
-    this->Multisampling = mode;
     this->Internals->WarnedOfMultisampling = false;
-    this->Modified();
-  }
-}
-
-//------------------------------------------------------------------------------
-void vtkHybridRayTracingPass::SetInterleave(int n)
-{
-  const int clamped = std::min(std::max(n, 1), 16);
-  if (this->Interleave != clamped)
-  {
-    this->Interleave = clamped;
-    this->Modified();
   }
 }
 

@@ -159,7 +159,7 @@ public:
    * one texture of the context holds: with many lights each gets less, see "shadow_map_resolution"
    * in GetStatistics. Default: 2048.
    */
-  void SetShadowMapResolution(int resolution);
+  vtkSetClampMacro(ShadowMapResolution, int, 16, 16384);
   vtkGetMacro(ShadowMapResolution, int);
   ///@}
 
@@ -188,7 +188,7 @@ public:
    * Number of times a ray may be reflected or refracted; what lies beyond adds nothing. Range
    * [0, 32], clamped; 0 switches secondary rays off. Default: 3, as in the paper.
    */
-  void SetMaximumDepth(int depth);
+  vtkSetClampMacro(MaximumDepth, int, 0, 32);
   vtkGetMacro(MaximumDepth, int);
   ///@}
 
@@ -258,7 +258,7 @@ public:
    * traced, and the last ones; the rest is interpolated in a second pass. 1 traces every pixel. What
    * the GPU shades is not thinned. Range [1, 16], clamped. Default: 1.
    */
-  void SetInterleave(int n);
+  vtkSetClampMacro(Interleave, int, 1, 16);
   vtkGetMacro(Interleave, int);
   ///@}
 
