@@ -29,9 +29,10 @@ void consider(KdSplit& best, double cost, int axis, float plane, bool planarBelo
   }
 }
 
-// The plane sweep of the paper's algorithm 4, one event at a time. Within a group of events at one place
-// the counts are right where it matters - behind the ends, in front of the starts, on either side of the
-// planar ones - and too large elsewhere, which never wins: the cost grows with each triangle.
+// The plane sweep of the paper's algorithm 4, one plane at a time: behind the triangles that end there, in
+// front of those that start, and on either side of those that lie in it. Only there the counts are
+// right, and others must not be weighed: where a side's area is zero, or vanishes in rounding,
+// triangles too many on it would cost nothing.
 //
 // A plane in the cell's own side would split nothing off, unless triangles lie in it: these then get a
 // flat cell of their own, which a ray passes in no time.
@@ -62,24 +63,27 @@ void sweep(const KdCell& cell, int axis, KdSplit& best)
   }
   while (event != end && *event < outside)
   {
-    const KdEventKind kind = kindOf(*event);
     const float plane = positionOf(*event);
-    above -= kind == KdEventKind::End;
-    consider(best, cost(plane, below, above), axis, plane, false, below, above);
-    if (kind == KdEventKind::Planar)
+    const KdEvent planar = makeEvent(plane, KdEventKind::Planar, 0);
+    const KdEvent start = firstStartAt(plane), after = firstEventAfter(plane);
+    for (; event != end && *event < planar; ++event)
     {
-      // All of them on one side or on the other: in between there may be full blocks on both.
-      const KdEvent next = firstStartAt(plane);
-      for (; event != end && *event < next; ++event)
+      --above;
+    }
+    consider(best, cost(plane, below, above), axis, plane, false, below, above);
+    if (event != end && *event < start)
+    {
+      for (; event != end && *event < start; ++event)
       {
         ++below;
         --above;
       }
       consider(best, cost(plane, below, above), axis, plane, true, below, above);
-      continue;
     }
-    below += kind == KdEventKind::Start;
-    ++event;
+    for (; event != end && *event < after; ++event)
+    {
+      ++below;
+    }
   }
   for (; event != end && kindOf(*event) == KdEventKind::End; ++event)
   {

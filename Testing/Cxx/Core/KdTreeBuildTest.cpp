@@ -1,12 +1,14 @@
 // The kd-tree's build: the same tree as the naive builder makes, whatever the mesh and the threads; what
 // it promises about its cells; how it is watched and called off.
 #include "KdTreeScenes.h"
+#include "Rendering/Core/Geometry/Coordinates.h"
 #include "Rendering/Core/Structures/KdTreeCost.h"
 #include "Rendering/Core/Structures/KdTreeEvents.h"
 #include "Rendering/Core/Structures/KdTreeTraversal.h"
 #include "Testing/Cxx/Reference/NaiveKdTree.h"
 
 #include <gtest/gtest.h>
+
 #include <tbb/global_control.h>
 #include <tbb/task_arena.h>
 
@@ -62,6 +64,43 @@ TEST(KdTreeBuild, SplitForSplitAsTheNaiveBuilder)
       EXPECT_EQ(differences(*tree, 0, naive, 0), 0);
       EXPECT_EQ(tree->references().size(), naive.references.size());
     }
+  }
+}
+
+// Among ordinary coordinates some of random bits: cells may be as thin as 10^-63 of their length. Beside
+// the rest of a split's cost that of a side without area vanishes in rounding, and must not hide how
+// many triangles lie on it.
+TEST(KdTreeBuild, SidesWithoutAreaCountTheirTriangles)
+{
+  scenes::Random random(83);
+  const auto coordinate = [&random] {
+    float value = static_cast<float>(random(-1.0, 1.0));
+    if (random.below(32) == 0)
+    {
+      do
+      {
+        const auto bits = static_cast<std::uint32_t>(random(0.0, 0x1p32));
+        std::memcpy(&value, &bits, sizeof(value));
+      } while (!isAdmissible(glm::vec3(value)));
+    }
+    return value;
+  };
+  for (int i = 0; i < 2000; ++i)
+  {
+    std::vector<glm::vec3> points(3 + random.below(100)), positions;
+    for (glm::vec3& point : points)
+    {
+      point = { coordinate(), coordinate(), coordinate() };
+    }
+    for (std::size_t k = 3 * (1 + random.below(250)); k > 0; --k)
+    {
+      positions.push_back(points[random.below(points.size())]);
+    }
+    const auto mesh = scenes::makeGeometry(positions);
+    const auto tree = KdTree::build(*mesh);
+    const reference::NaiveKdTree naive = reference::naiveKdTree(*mesh);
+    ASSERT_EQ(differences(*tree, 0, naive, 0), 0) << i;
+    ASSERT_EQ(tree->references().size(), naive.references.size()) << i;
   }
 }
 
