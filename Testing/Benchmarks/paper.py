@@ -18,7 +18,7 @@ import statistics as st
 from measure import WARM_UP, device_of, header, model_on_floor, models, timed, window_of
 from vtkhybrid import vtkHybridBARTImporter, vtkHybridRayTracingPass
 from vtkmodules.util.numpy_support import vtk_to_numpy
-from vtkmodules.vtkChartsCore import vtkChart, vtkChartXY
+from vtkmodules.vtkChartsCore import vtkChart, vtkChartLegend, vtkChartXY
 from vtkmodules.vtkCommonCore import vtkFloatArray, vtkObject
 from vtkmodules.vtkCommonDataModel import vtkTable
 from vtkmodules.vtkIOImage import vtkPNGWriter
@@ -284,8 +284,8 @@ CURVES = [
 
 def figure(stage, folder):
     frames = stage.frames
-    # Warmed up at the first frame, so that all of the animation is timed.
-    times = measure(stage, CURVES, frames, lambda i: max(i - WARM_UP, 0))
+    # Warmed up at the frames behind the first, so that all of the animation is timed and none is still.
+    times = measure(stage, CURVES, frames, lambda i: abs(i - WARM_UP))
     moments = [stage.moment(i) for i in range(frames)]
     stage.window.Finalize()
     with (folder / "figure_6.csv").open("w", newline="", encoding="utf-8") as file:
@@ -318,6 +318,7 @@ def draw_chart(moments, times, path):
     chart = vtkChartXY()
     chart.SetTitle("Robots, 800 x 600: time of a frame")
     chart.SetShowLegend(True)
+    chart.GetLegend().SetVerticalAlignment(vtkChartLegend.BOTTOM)
     chart.GetAxis(1).SetTitle("seconds of the animation")
     chart.GetAxis(0).SetTitle("milliseconds")
     chart.GetAxis(0).SetLogScale(True)
