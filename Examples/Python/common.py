@@ -1,13 +1,50 @@
-"""What the examples share: writing a window's picture to a file, and finding the scene data."""
+"""What the examples share: actors, writing a window's picture to a file, and finding the scene data."""
 
 import os
 import pathlib
 import sys
 
 from vtkmodules.util.numpy_support import numpy_to_vtk
+from vtkmodules.vtkCommonComputationalGeometry import vtkParametricTorus
 from vtkmodules.vtkCommonDataModel import vtkImageData
+from vtkmodules.vtkFiltersCore import vtkPolyDataNormals
+from vtkmodules.vtkFiltersSources import vtkParametricFunctionSource
 from vtkmodules.vtkIOImage import vtkPNGWriter
-from vtkmodules.vtkRenderingCore import vtkRenderWindow, vtkWindowToImageFilter
+from vtkmodules.vtkRenderingCore import (
+    vtkActor,
+    vtkPolyDataMapper,
+    vtkRenderWindow,
+    vtkWindowToImageFilter,
+)
+
+
+def actor(source, color, specular=0.0, power=25.0, ambient=0.15):
+    """A plainly coloured actor of an algorithm's output."""
+    mapper = vtkPolyDataMapper()
+    mapper.SetInputConnection(source.GetOutputPort())
+    mapper.ScalarVisibilityOff()
+    result = vtkActor()
+    result.SetMapper(mapper)
+    result.GetProperty().SetColor(*color)
+    result.GetProperty().SetAmbient(ambient)
+    result.GetProperty().SetSpecular(specular)
+    result.GetProperty().SetSpecularPower(power)
+    return result
+
+
+def torus(ring_radius, cross_section_radius, resolution):
+    """An algorithm that makes a smooth torus; resolution: cells along the ring and across it."""
+    shape = vtkParametricTorus()
+    shape.SetRingRadius(ring_radius)
+    shape.SetCrossSectionRadius(cross_section_radius)
+    source = vtkParametricFunctionSource()
+    source.SetParametricFunction(shape)
+    source.SetUResolution(resolution[0])
+    source.SetVResolution(resolution[1])
+    # The parametric source closes its mesh with triangles of no area: leave them out.
+    normals = vtkPolyDataNormals()
+    normals.SetInputConnection(source.GetOutputPort())
+    return normals
 
 
 def window_of(renderer, size=(800, 600)):

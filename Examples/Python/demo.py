@@ -11,7 +11,7 @@ import statistics as statistics_of
 import sys
 import time
 
-from common import save, scene_data, window_of
+from common import actor, save, scene_data, window_of
 from vtkhybrid import __version__, statistics, vtkHybridMaterial, vtkHybridRayTracingPass
 from vtkmodules.vtkCommonComputationalGeometry import vtkParametricTorus
 from vtkmodules.vtkFiltersCore import vtkPolyDataNormals, vtkTriangleFilter
@@ -23,20 +23,7 @@ from vtkmodules.vtkFiltersSources import (
     vtkSphereSource,
 )
 from vtkmodules.vtkIOPLY import vtkPLYReader
-from vtkmodules.vtkRenderingCore import vtkActor, vtkLight, vtkPolyDataMapper, vtkRenderer
-
-
-def actor(source, color, specular=0.2, power=25.0):
-    mapper = vtkPolyDataMapper()
-    mapper.SetInputConnection(source.GetOutputPort())
-    mapper.ScalarVisibilityOff()
-    result = vtkActor()
-    result.SetMapper(mapper)
-    result.GetProperty().SetColor(*color)
-    result.GetProperty().SetAmbient(0.15)
-    result.GetProperty().SetSpecular(specular)
-    result.GetProperty().SetSpecularPower(power)
-    return result
+from vtkmodules.vtkRenderingCore import vtkLight, vtkRenderer
 
 
 def bunny(path):
@@ -88,8 +75,8 @@ def scene(model, mirror, glass):
     renderer.SetBackground(0.86, 0.88, 0.92)
     renderer.SetBackground2(0.35, 0.47, 0.66)
     renderer.GradientBackgroundOn()
-    renderer.AddActor(actor(standing(model), (0.93, 0.72, 0.45)))
-    ground = actor(floor(), (0.62, 0.64, 0.68), specular=0.0)
+    renderer.AddActor(actor(standing(model), (0.93, 0.72, 0.45), specular=0.2))
+    ground = actor(floor(), (0.62, 0.64, 0.68))
     renderer.AddActor(ground)
     if mirror:
         vtkHybridMaterial.SetReflectance(ground, 0.4)

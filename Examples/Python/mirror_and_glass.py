@@ -3,66 +3,37 @@
     ./run python Examples/Python/mirror_and_glass.py [picture.png]
 """
 
-from common import output_path, save, window_of
+from common import actor, output_path, save, torus, window_of
 from vtkhybrid import statistics, vtkHybridMaterial, vtkHybridRayTracingPass
-from vtkmodules.vtkFiltersCore import vtkPolyDataNormals
-from vtkmodules.vtkFiltersSources import (
-    vtkParametricFunctionSource,
-    vtkPlaneSource,
-    vtkSphereSource,
-)
-from vtkmodules.vtkCommonComputationalGeometry import vtkParametricTorus
-from vtkmodules.vtkRenderingCore import vtkActor, vtkLight, vtkPolyDataMapper, vtkRenderer
-
-
-def actor(source, color, specular=0.0, power=1.0):
-    mapper = vtkPolyDataMapper()
-    mapper.SetInputConnection(source.GetOutputPort())
-    mapper.ScalarVisibilityOff()
-    result = vtkActor()
-    result.SetMapper(mapper)
-    result.GetProperty().SetColor(*color)
-    result.GetProperty().SetAmbient(0.12)
-    result.GetProperty().SetSpecular(specular)
-    result.GetProperty().SetSpecularPower(power)
-    return result
-
+from vtkmodules.vtkFiltersSources import vtkPlaneSource, vtkSphereSource
+from vtkmodules.vtkRenderingCore import vtkLight, vtkRenderer
 
 plane = vtkPlaneSource()
 plane.SetOrigin(-6, 0, -6)
 plane.SetPoint1(-6, 0, 6)
 plane.SetPoint2(6, 0, -6)
-floor = actor(plane, (0.55, 0.6, 0.65))
+floor = actor(plane, (0.55, 0.6, 0.65), ambient=0.12)
 vtkHybridMaterial.SetReflectance(floor, 0.45)
 
 sphere = vtkSphereSource()
 sphere.SetRadius(0.8)
 sphere.SetThetaResolution(200)
 sphere.SetPhiResolution(200)
-glass = actor(sphere, (1, 1, 1), specular=0.6, power=80)
+glass = actor(sphere, (1, 1, 1), specular=0.6, power=80, ambient=0.12)
 glass.SetPosition(1.1, 0.8, 0.9)
 vtkHybridMaterial.SetGlass(glass, 1.5)
 
-ring = vtkParametricTorus()
-ring.SetRingRadius(0.8)
-ring.SetCrossSectionRadius(0.3)
-source = vtkParametricFunctionSource()
-source.SetParametricFunction(ring)
-source.SetUResolution(120)
-source.SetVResolution(60)
-# The parametric source closes its mesh with triangles of no area: leave them out.
-normals = vtkPolyDataNormals()
-normals.SetInputConnection(source.GetOutputPort())
-torus = actor(normals, (0.9, 0.55, 0.15), specular=0.4, power=30)
-torus.RotateX(55)
-torus.RotateY(20)
-torus.SetPosition(-0.8, 1.0, -0.4)
+mesh = torus(0.8, 0.3, resolution=(120, 60))
+ring = actor(mesh, (0.9, 0.55, 0.15), specular=0.4, power=30, ambient=0.12)
+ring.RotateX(55)
+ring.RotateY(20)
+ring.SetPosition(-0.8, 1.0, -0.4)
 
 renderer = vtkRenderer()
 renderer.SetBackground(0.85, 0.88, 0.92)
 renderer.SetBackground2(0.25, 0.4, 0.65)
 renderer.GradientBackgroundOn()
-for part in (floor, glass, torus):
+for part in (floor, glass, ring):
     renderer.AddActor(part)
 lamp = vtkLight()
 lamp.SetLightTypeToSceneLight()

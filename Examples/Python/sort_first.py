@@ -25,37 +25,18 @@ import time
 import typing
 
 import numpy as np
-from common import save_pixels, scene_data, window_of
+from common import actor, save_pixels, scene_data, torus, window_of
 from vtkhybrid import buffer, statistics, vtkHybridMaterial, vtkHybridRayTracingPass
 from vtkmodules.util.numpy_support import vtk_to_numpy
-from vtkmodules.vtkCommonComputationalGeometry import vtkParametricTorus
 from vtkmodules.vtkCommonCore import vtkUnsignedCharArray
-from vtkmodules.vtkFiltersCore import vtkPolyDataNormals
-from vtkmodules.vtkFiltersSources import (
-    vtkParametricFunctionSource,
-    vtkPlaneSource,
-    vtkSphereSource,
-)
-from vtkmodules.vtkRenderingCore import vtkActor, vtkLight, vtkPolyDataMapper, vtkRenderer
+from vtkmodules.vtkFiltersSources import vtkPlaneSource, vtkSphereSource
+from vtkmodules.vtkRenderingCore import vtkLight, vtkRenderer
 
 ATTEMPTS = 3  # a tile that so many processes have died of is given up
 POLL = 0.001  # seconds; MPI's own waiting would keep a core busy that others draw with
 
 
 # -- scenes: every worker makes its own, of the same numbers ------------------------------------------
-
-
-def actor(source, color, specular=0.0):
-    mapper = vtkPolyDataMapper()
-    mapper.SetInputConnection(source.GetOutputPort())
-    mapper.ScalarVisibilityOff()
-    result = vtkActor()
-    result.SetMapper(mapper)
-    result.GetProperty().SetColor(*color)
-    result.GetProperty().SetAmbient(0.15)
-    result.GetProperty().SetSpecular(specular)
-    result.GetProperty().SetSpecularPower(40)
-    return result
 
 
 def rings():
@@ -70,24 +51,15 @@ def rings():
     sphere.SetRadius(1.1)
     sphere.SetThetaResolution(120)
     sphere.SetPhiResolution(120)
-    ball = actor(sphere, (1, 1, 1), specular=0.6)
+    ball = actor(sphere, (1, 1, 1), specular=0.6, power=40)
     ball.SetPosition(0, 1.1, 0)
     vtkHybridMaterial.SetGlass(ball, 1.5)
-    shape = vtkParametricTorus()
-    shape.SetRingRadius(0.6)
-    shape.SetCrossSectionRadius(0.22)
-    mesh = vtkParametricFunctionSource()
-    mesh.SetParametricFunction(shape)
-    mesh.SetUResolution(80)
-    mesh.SetVResolution(40)
-    # The parametric source closes its mesh with triangles of no area: leave them out.
-    normals = vtkPolyDataNormals()
-    normals.SetInputConnection(mesh.GetOutputPort())
+    mesh = torus(0.6, 0.22, resolution=(80, 40))
     parts = [floor, ball]
     for i in range(12):
         angle = 2 * math.pi * i / 12
         color = [0.55 + 0.4 * math.cos(angle + shift) for shift in (0.0, 2.1, 4.2)]
-        ring = actor(normals, color, specular=0.4)
+        ring = actor(mesh, color, specular=0.4, power=40)
         ring.RotateX(25 * (i % 3))
         ring.RotateY(30 * i)
         ring.SetPosition(3.1 * math.cos(angle), 0.85, 3.1 * math.sin(angle))

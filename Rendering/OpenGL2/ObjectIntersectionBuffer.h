@@ -1,6 +1,7 @@
 // The object intersection buffer (paper, section 2.1): per pixel the visible triangle and, in direct
-// rendering, the rasteriser's (u, v). Filled by rasterisation, or with what primary rays have found. An own single-sample framebuffer with one integer target: the
-// paper codes the number in RGB (2^24 triangles), an integer target holds 2^32 - 1.
+// rendering, the rasteriser's (u, v). Filled by rasterisation, or with what primary rays have found. An
+// own single-sample framebuffer with one integer target: the paper codes the number in RGB (2^24
+// triangles), an integer target holds 2^32 - 1.
 #pragma once
 
 #include "Rendering/OpenGL2/DepthConvention.h"
@@ -53,7 +54,6 @@ private:
   GLuint Framebuffer;
   DepthConvention Convention;
   Visibility Mode = Visibility::ItemBuffer;
-  bool Complete = false;
   std::uint64_t TrianglesDrawn = 0; // in the last draw
 };
 

@@ -1,5 +1,6 @@
-// Spreads the tiles over the threads, and makes the second passes once all samples are there. A tile's result depends on nothing but its pixels, and the
-// counters are whole numbers: the picture is the same, bit by bit, for any number of threads.
+// Spreads the tiles over the threads, and makes the second passes once all samples are there. A tile's
+// result depends on nothing but its pixels, and the counters are whole numbers: the picture is the
+// same, bit by bit, for any number of threads.
 #include "Rendering/Core/Tracing/ImageTracer.h"
 
 #include "Rendering/Core/Tracing/Interleaving.h"

@@ -40,6 +40,7 @@ Lighting::Lighting(const Snapshot& snapshot, const Surfaces& surfaces, const Str
   }
   this->ToView = snapshot.camera.worldToView;
   this->ToView[3] = snapshot.camera.worldToView * glm::dvec4(snapshot.origin, 1.0);
+  this->NormalsToView = glm::inverseTranspose(glm::dmat3(this->ToView));
   this->AnyTranslucent =
     std::any_of(snapshot.parts.begin(), snapshot.parts.end(), &isTranslucent);
 }
@@ -187,7 +188,7 @@ float Lighting::shareFromMap(const SurfacePoint& point, std::size_t light) const
   const ShadowSlot& slot = tables.slots[light];
   const glm::vec3 position(this->ToView * glm::dvec4(point.position, 1.0));
   const glm::vec3 normal(
-    glm::normalize(glm::inverseTranspose(glm::dmat3(this->ToView)) * point.geometricNormal));
+    glm::normalize(this->NormalsToView * point.geometricNormal));
   const float folds = this->Scene.parts[point.part].geometry->flat ? 0.0f : 1.0f;
   return shading::ShadowLookup(tables).hrtLightVisibility(
     slot.firstFace, slot.faceCount, this->ViewLights[light], position, normal, folds);

@@ -84,10 +84,11 @@ struct PrimaryHits
   std::vector<double> clipDepths;   // z / w in OpenGL's clip space, -1 near to 1 far; 1: no hit
 };
 
-// Primary visibility by rays through the centres of the pixels within the settings' bounds: the nearest triangle, between the near and
-// the far plane, of a part that the camera sees, on a side that is not culled; the other pixels hit
-// nothing. Of the other settings only the interleaving counts: a pixel between the samples shows what the nearest sample shows; with error
-// control only where the samples around it show one triangle or nothing, elsewhere its ray is traced.
+// Primary visibility by rays through the centres of the pixels within the settings' bounds: the nearest
+// triangle, between the near and the far plane, of a part that the camera sees, on a side that is not
+// culled; the other pixels hit nothing. Of the other settings only the interleaving counts: a pixel
+// between the samples shows what the nearest sample shows; with error control only where the samples
+// around it show one triangle or nothing, elsewhere its ray is traced.
 RayCounters castPrimaryRays(const Snapshot& snapshot, const Structure& structure,
   const TracerSettings& settings, PrimaryHits& hits);
 
