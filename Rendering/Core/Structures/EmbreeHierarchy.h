@@ -73,11 +73,11 @@ private:
   bool test(std::size_t block, int lane, const Member& member, Search& search, Hit& hit) const;
 
   WideTree Tree;
-  std::vector<TriangleBlock> Blocks;
+  HugePageVector<TriangleBlock> Blocks;
   // kLanes a block, unless all triangles are of one member; and if they are not those of the
   // blocks.
   std::vector<std::uint32_t> Members;
-  std::vector<std::array<glm::vec3, 3>> OwnPositions;
+  HugePageVector<std::array<glm::vec3, 3>> OwnPositions;
   TraversalBox Box;
   EntryBox Entry;
   SieveSlack Slack;

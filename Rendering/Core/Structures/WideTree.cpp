@@ -70,7 +70,7 @@ class WideTree::Gathering
 public:
   std::vector<Leaf> Leaves;
 
-  explicit Gathering(std::vector<WideNode>& nodes)
+  explicit Gathering(HugePageVector<WideNode>& nodes)
     : Nodes(nodes)
   {
   }
@@ -174,7 +174,7 @@ private:
     return static_cast<std::uint32_t>(node);
   }
 
-  std::vector<WideNode>& Nodes;
+  HugePageVector<WideNode>& Nodes;
   std::vector<Choice> Choices; // of the tree of two, children before parents
 };
 

@@ -8,6 +8,7 @@
 #pragma once
 
 #include "Rendering/Core/Structures/EmbreeDevice.h"
+#include "Rendering/Core/Structures/HugePages.h"
 #include "Rendering/Core/Structures/TraversalRay.h"
 
 #include <cstdint>
@@ -85,7 +86,7 @@ private:
   void setBounds(std::size_t node, int child, const TraversalBox& box, double padding);
   void setBounds(std::size_t node, int child, std::uint32_t below);
 
-  std::vector<WideNode> Nodes; // parents before children
+  HugePageVector<WideNode> Nodes; // parents before children
   std::uint32_t Root = kUnused;
 };
 
