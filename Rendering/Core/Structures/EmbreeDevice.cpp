@@ -30,16 +30,24 @@ std::string describe(RTCError error)
   }
 }
 
-// Embree answers "8 rays natively" from AVX on; AVX2 and fused operations are asked of the
-// processor.
-bool runsWide(RTCDevice device)
+// Embree answers "8 rays natively" from AVX on, 16 from AVX-512 on; what exactly we need of them is
+// asked of the processor.
+InstructionSet setOf(RTCDevice device)
 {
 #if defined(__GNUC__) && defined(__x86_64__)
-  return rtcGetDeviceProperty(device, RTC_DEVICE_PROPERTY_NATIVE_RAY8_SUPPORTED) != 0 &&
-    __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma");
+  if (rtcGetDeviceProperty(device, RTC_DEVICE_PROPERTY_NATIVE_RAY8_SUPPORTED) == 0 ||
+    !__builtin_cpu_supports("avx2") || !__builtin_cpu_supports("fma"))
+  {
+    return InstructionSet::Base;
+  }
+  return rtcGetDeviceProperty(device, RTC_DEVICE_PROPERTY_NATIVE_RAY16_SUPPORTED) != 0 &&
+      __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512vl") &&
+      __builtin_cpu_supports("avx512dq")
+    ? InstructionSet::Avx512
+    : InstructionSet::Avx2;
 #else
   (void)device;
-  return false;
+  return InstructionSet::Base;
 #endif
 }
 
@@ -56,7 +64,7 @@ Device::Device(const std::string& configuration)
   try
   {
     this->check("creating the device");
-    this->Wide = runsWide(this->Handle);
+    this->Set = setOf(this->Handle);
   }
   catch (...)
   {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "Rendering/Core/Structures/EmbreeShim.h"
+#include "Rendering/Core/Structures/InstructionSet.h"
 
 #include <mutex>
 #include <string>
@@ -22,9 +23,9 @@ public:
 
   RTCDevice handle() const { return this->Handle; }
 
-  // Whether Embree itself runs code for AVX2 here: it looks at the processor and at the
+  // That for which Embree itself runs code here: it looks at the processor and at the
   // configuration, so that one switch steers Embree's code and ours.
-  bool wide() const { return this->Wide; }
+  InstructionSet instructionSet() const { return this->Set; }
 
   // Throws when a call since the last check failed on this thread.
   void check(const char* doing);
@@ -33,7 +34,7 @@ private:
   static void remember(void* self, RTCError, const char* message);
 
   RTCDevice Handle;
-  bool Wide = false;
+  InstructionSet Set = InstructionSet::Base;
   std::mutex Mutex;
   std::string Message;
 };

@@ -1,125 +1,24 @@
-// The rays of a packet where they enter a tree's outer box, and their hull. Included by
+// The hull of a packet's rays, which goes down the tree in place of them. Included by
 // EmbreePackets.inl.
-
-// A number a ray.
-template <class T>
-struct alignas(32) PerRay
-{
-  T of[kPacket];
-};
-
-HRT_LANES int lowest(unsigned int mask)
-{
-  return __builtin_ctz(mask);
-}
-
-// The packet's rays in the coordinates of one tree.
-struct PacketRays
-{
-  PerRay<double> origin[3], direction[3], end;
-  unsigned int active = 0; // bits of those that take part; the others repeat one of them
-};
-
-// Where they enter its outer box: TraversalRay for each of them.
-struct PacketEntry
-{
-  PerRay<float> origin[3], direction[3], end;
-  PerRay<double> start, scale;
-  unsigned int active = 0; // the others repeat one of these
-
-  // enterBox for all rays, one operation after the other.
-  HRT_TARGET PacketEntry(const EntryBox& box, const PacketRays& rays)
-  {
-    PerRay<double> leave;
-    for (unsigned int i = 0; i < kPacket; ++i)
-    {
-      const double x = std::fabs(rays.direction[0].of[i]), y = std::fabs(rays.direction[1].of[i]),
-                   z = std::fabs(rays.direction[2].of[i]);
-      const double xy = x > y ? x : y, longest = xy > z ? xy : z;
-      this->scale.of[i] = longest;
-      this->start.of[i] = 0.0;
-      leave.of[i] = rays.end.of[i] * longest;
-    }
-    for (int axis = 0; axis < 3; ++axis)
-    {
-      const double lower = box.lower[axis], upper = box.upper[axis];
-      for (unsigned int i = 0; i < kPacket; ++i)
-      {
-        const double inverse = this->scale.of[i] / rays.direction[axis].of[i];
-        const double t0 = (lower - rays.origin[axis].of[i]) * inverse;
-        const double t1 = (upper - rays.origin[axis].of[i]) * inverse;
-        const double nearer = t0 < t1 ? t0 : t1, farther = t0 < t1 ? t1 : t0;
-        this->start.of[i] = nearer > this->start.of[i] ? nearer : this->start.of[i];
-        leave.of[i] = farther < leave.of[i] ? farther : leave.of[i];
-      }
-    }
-    for (int axis = 0; axis < 3; ++axis)
-    {
-      for (unsigned int i = 0; i < kPacket; ++i)
-      {
-        const double along = rays.direction[axis].of[i] / this->scale.of[i];
-        this->origin[axis].of[i] =
-          static_cast<float>(rays.origin[axis].of[i] + this->start.of[i] * along);
-        this->direction[axis].of[i] = static_cast<float>(along);
-      }
-    }
-    PerRay<float> within;
-    for (unsigned int i = 0; i < kPacket; ++i)
-    {
-      this->end.of[i] = this->endOf(i, rays.end.of[i]);
-      within.of[i] = static_cast<float>(leave.of[i] - this->start.of[i]);
-    }
-    for (unsigned int half = 0; half < kPacket; half += kLanes)
-    {
-      this->active |= lessEqual(all(0.0f), load(within.of + half)) << half;
-    }
-    this->active &= rays.active;
-    this->repeatActive();
-  }
-
-  // TraversalRay::end of one ray.
-  HRT_LANES float endOf(unsigned int i, double t) const
-  {
-    const double parameter = t * this->scale.of[i] - this->start.of[i];
-    return static_cast<float>(parameter > 0.0 ? parameter : 0.0) * (1.0f + 0x1p-22f) +
-      std::numeric_limits<float>::min();
-  }
-
-private:
-  // A ray that has missed the box may have entered it at infinity.
-  HRT_LANES void repeatActive()
-  {
-    const unsigned int rest = this->active ^ ((1u << kPacket) - 1u);
-    for (unsigned int others = this->active == 0 ? 0 : rest; others != 0; others &= others - 1)
-    {
-      const int i = lowest(others), first = lowest(this->active);
-      for (int axis = 0; axis < 3; ++axis)
-      {
-        this->origin[axis].of[i] = this->origin[axis].of[first];
-        this->direction[axis].of[i] = this->direction[axis].of[first];
-      }
-      this->end.of[i] = this->end.of[first];
-    }
-  }
-};
 
 // The hull of a packet's rays: two lines in x and two in y over the depth z, the axis along which
 // all their directions are 1 or all are -1. A line joins the least (or most) x of any ray where the
 // first ray begins and where the outer box ends: no ray, being straight, leaves it in between.
 //
 // Everything is widened by 20 (R + H) e, with R, H and e as in TraversalBox::padding, which is a
-// quarter of it. At both depths a ray's x is off by 3 R e + 8 H e: its origin's by R e, twice, for x
-// and z; its direction, rounded, over 2 H, by 2 H e; the difference of depths and its product with
-// the direction by 2 H e each; the sum, of at most R + 2 H, by R e + 2 H e. The line's slope is no
-// steeper than a ray's, 1; by what the two ends' difference and the quotient are rounded by, it is
-// off, over the depth, by 6 H e, and by nothing more where it is cut off at 1. Its offset costs 4 R e,
-// its evaluation at a box 3 R e. Together 10 R e + 14 H e.
+// quarter of it. At both depths a ray's x is off by 3 R e + 8 H e: its origin's by R e, twice, for
+// x and z; its direction, rounded, over 2 H, by 2 H e; the difference of depths and its product
+// with the direction by 2 H e each; the sum, of at most R + 2 H, by R e + 2 H e. The line's slope
+// is no steeper than a ray's, 1; by what the two ends' difference and the quotient are rounded by,
+// it is off, over the depth, by 6 H e, and by nothing more where it is cut off at 1. Its offset
+// costs 4 R e, its evaluation at a box 3 R e. Together 10 R e + 14 H e.
 struct Frustum
 {
   unsigned int rays = 0; // bits of those that are still searching
   PerRay<float> apart;   // zero; infinity for those that are not, or not any more
   int x = 0, y = 0, z = 0;
   float forward = 1.0f;
+  int nearSide = 0;   // which of a box' bounds along z is met first
   float begin = 0.0f; // the first origin's forward * z
   float slack = 0.0f;
   float slope[2][2], offset[2][2]; // lower and upper; x and y
@@ -128,30 +27,31 @@ struct Frustum
   // False when the rays do not go the same way.
   HRT_TARGET bool enclose(const PacketEntry& entry, const TraversalBox& box)
   {
-    const int first = lowest(entry.active);
+    const int one = lowest(entry.active);
     const Axes axes(glm::vec3(
-      entry.direction[0].of[first], entry.direction[1].of[first], entry.direction[2].of[first]));
+      entry.direction[0].of[one], entry.direction[1].of[one], entry.direction[2].of[one]));
     this->x = axes.x;
     this->y = axes.y;
     this->z = axes.z;
-    this->forward = entry.direction[axes.z].of[first];
+    this->forward = entry.direction[axes.z].of[one];
+    this->nearSide = this->forward > 0.0f ? 0 : 1;
     this->keep(entry.active);
-    Floats first0 = all(std::numeric_limits<float>::infinity());
+    RayFloats nearest = allRays(std::numeric_limits<float>::infinity());
     unsigned int back = 0;
-    for (unsigned int half = 0; half < kPacket; half += kLanes)
+    for (unsigned int first = 0; first < kPacket; first += RayFloats::kLanes)
     {
-      const Floats way = load(entry.direction[axes.z].of + half) * all(this->forward);
-      back |= less(way, all(1.0f)) << half;
-      first0 = least(first0,
-        mulAdd(
-          load(entry.origin[axes.z].of + half), all(this->forward), load(this->apart.of + half)));
+      const RayFloats way = loadRays(entry.direction[axes.z].of + first) * allRays(this->forward);
+      back |= less(way, allRays(1.0f)) << first;
+      nearest = least(nearest,
+        mulAdd(loadRays(entry.origin[axes.z].of + first), allRays(this->forward),
+          loadRays(this->apart.of + first)));
     }
     if ((back & entry.active) != 0)
     {
       return false;
     }
     this->slack = static_cast<float>(4.0 * box.padding());
-    this->begin = smallest(first0);
+    this->begin = smallest(nearest);
     const double last = this->forward > 0.0f ? box.upper[axes.z] : -box.lower[axes.z];
     const float depth = std::max(static_cast<float>(last) - this->begin, 0.0f);
     this->fit(entry, axes.x, 0, depth);
@@ -171,76 +71,80 @@ struct Frustum
   // Where the last of the rays ends, from the beginning.
   HRT_LANES float end(const PacketEntry& entry) const
   {
-    Floats last = all(-1.0f);
-    for (unsigned int half = 0; half < kPacket; half += kLanes)
+    RayFloats last = allRays(-1.0f);
+    for (unsigned int first = 0; first < kPacket; first += RayFloats::kLanes)
     {
-      const Floats start =
-        mulSub(load(entry.origin[this->z].of + half), all(this->forward), all(this->begin));
+      const RayFloats start = mulSub(
+        loadRays(entry.origin[this->z].of + first), allRays(this->forward), allRays(this->begin));
       // An end may be infinite, and infinity less infinity no number.
-      const Floats end =
-        least(start + load(entry.end.of + half), all(std::numeric_limits<float>::max()));
-      last = most(last, end - load(this->apart.of + half));
+      const RayFloats end =
+        least(start + loadRays(entry.end.of + first), allRays(std::numeric_limits<float>::max()));
+      last = most(last, end - loadRays(this->apart.of + first));
     }
     return largest(last) + this->slack;
   }
 
-  // Of eight boxes those that the frustum meets, and their depths from its beginning.
-  HRT_LANES unsigned int meet(
-    const Floats (&lower)[3], const Floats (&upper)[3], Floats end, Floats& start) const
+  struct Met
+  {
+    unsigned int boxes; // as bits
+    Floats start;       // their depths from the beginning
+    // At least |x| + |y|, along the axes of the shear, of any point in the box relative to any ray
+    // at the point's depth. In front of where the first ray begins a ray, inclined by no more than
+    // 1, leaves the hull, whose lines are neither, by twice the way to there.
+    Floats spread;
+  };
+
+  // Which of eight boxes the frustum meets. `bound(side, axis)`: their lower (0) or upper (1)
+  // bounds.
+  template <class Bound>
+  HRT_LANES Met meet(Bound bound, Floats end) const
   {
     const int axes[2] = { this->x, this->y };
-    Floats gap[2];
+    const Floats nearZ = bound(this->nearSide, this->z), farZ = bound(this->nearSide ^ 1, this->z);
+    Floats gap[2], spread[2];
     for (int i = 0; i < 2; ++i)
     {
-      const Floats below = mulAdd(all(this->slope[0][i]),
-        this->slope[0][i] < 0.0f ? upper[this->z] : lower[this->z], all(this->offset[0][i]));
-      const Floats above = mulAdd(all(this->slope[1][i]),
-        this->slope[1][i] < 0.0f ? lower[this->z] : upper[this->z], all(this->offset[1][i]));
-      gap[i] = least(upper[axes[i]] - below, above - lower[axes[i]]);
+      const Floats slope0 = all(this->slope[0][i]), offset0 = all(this->offset[0][i]);
+      const Floats slope1 = all(this->slope[1][i]), offset1 = all(this->offset[1][i]);
+      const Floats below = least(mulAdd(slope0, nearZ, offset0), mulAdd(slope0, farZ, offset0));
+      const Floats above = most(mulAdd(slope1, nearZ, offset1), mulAdd(slope1, farZ, offset1));
+      const Floats over = bound(1, axes[i]) - below, under = above - bound(0, axes[i]);
+      gap[i] = least(over, under);
+      spread[i] = most(over, under);
     }
-    const bool ahead = this->forward > 0.0f;
     const Floats forwards = all(this->forward), from = all(this->begin);
-    const Floats nearer = mulSub(ahead ? lower[this->z] : upper[this->z], forwards, from);
-    const Floats farther = mulSub(ahead ? upper[this->z] : lower[this->z], forwards, from);
-    start = most(nearer, all(0.0f));
+    const Floats nearer = mulSub(nearZ, forwards, from), farther = mulSub(farZ, forwards, from);
+    Met met;
+    met.start = most(nearer, all(0.0f));
+    met.spread = mulAdd(all(4.0f), met.start - nearer, spread[0] + spread[1]);
     // The depths decide last: they are numbers even for an unused child.
     const Floats along = least(end - nearer, farther + all(this->slack));
-    return lessEqual(all(0.0f), least(least(gap[0], gap[1]), along));
+    met.boxes = lessEqual(all(0.0f), least(least(gap[0], gap[1]), along));
+    return met;
   }
 
   HRT_LANES unsigned int meet(const WideNode& node, Floats end, Floats& start) const
   {
-    const Floats lower[3] = { load(node.bound[0][0]), load(node.bound[0][1]),
-      load(node.bound[0][2]) };
-    const Floats upper[3] = { load(node.bound[1][0]), load(node.bound[1][1]),
-      load(node.bound[1][2]) };
-    return this->meet(lower, upper, end, start);
+    const Met met = this->meet(
+      [&node](int side, int axis) HRT_TARGET { return load(node.bound[side][axis]); }, end);
+    start = met.start;
+    return met.boxes;
   }
 
 private:
-  HRT_LANES static float smallest(Floats a)
-  {
-    alignas(32) float lanes[kLanes];
-    store(lanes, a);
-    const float a0 = std::min(lanes[0], lanes[1]), a1 = std::min(lanes[2], lanes[3]);
-    const float a2 = std::min(lanes[4], lanes[5]), a3 = std::min(lanes[6], lanes[7]);
-    return std::min(std::min(a0, a1), std::min(a2, a3));
-  }
-  HRT_LANES static float largest(Floats a) { return -smallest(all(0.0f) - a); }
-
   HRT_LANES void fit(const PacketEntry& entry, int axis, int which, float depth)
   {
-    Floats lower[2], upper[2];
-    lower[0] = lower[1] = all(std::numeric_limits<float>::infinity());
-    upper[0] = upper[1] = all(-std::numeric_limits<float>::infinity());
-    for (unsigned int half = 0; half < kPacket; half += kLanes)
+    RayFloats lower[2], upper[2];
+    lower[0] = lower[1] = allRays(std::numeric_limits<float>::infinity());
+    upper[0] = upper[1] = allRays(-std::numeric_limits<float>::infinity());
+    for (unsigned int first = 0; first < kPacket; first += RayFloats::kLanes)
     {
-      const Floats shear = load(entry.direction[axis].of + half);
-      const Floats out = load(this->apart.of + half);
-      const Floats after =
-        mulSub(load(entry.origin[this->z].of + half), all(this->forward), all(this->begin));
-      const Floats at0 = subMul(load(entry.origin[axis].of + half), shear, after);
-      const Floats at1 = mulAdd(shear, all(depth), at0);
+      const RayFloats shear = loadRays(entry.direction[axis].of + first);
+      const RayFloats out = loadRays(this->apart.of + first);
+      const RayFloats after = mulSub(
+        loadRays(entry.origin[this->z].of + first), allRays(this->forward), allRays(this->begin));
+      const RayFloats at0 = subMul(loadRays(entry.origin[axis].of + first), shear, after);
+      const RayFloats at1 = mulAdd(shear, allRays(depth), at0);
       lower[0] = least(lower[0], at0 + out);
       lower[1] = least(lower[1], at1 + out);
       upper[0] = most(upper[0], at0 - out);

@@ -218,7 +218,7 @@ bool Hierarchy::nearest(
     }
     Hit hit;
     hit.triangle = member.firstTriangle + triangle;
-    nearer = (this->test(block, lane, member, search, hit) && search.offer(hit)) || nearer;
+    nearer = (this->test(block, lane, member, search, hit) && offer(hit, search.best)) || nearer;
   }
   return nearer;
 }

@@ -1,8 +1,8 @@
-// The ways of rays through both levels, for each instruction set that they are compiled for. Which
-// one runs changes the time and nothing else.
+// The ways of rays through both levels, for each instruction set that they are compiled for.
 #pragma once
 
 #include "Rendering/Core/Structures/EmbreeTopLevel.h"
+#include "Rendering/Core/Structures/InstructionSet.h"
 
 namespace hrt
 {
@@ -16,13 +16,14 @@ struct Kernels
 {
   void (*nearest)(const TopLevel& scene, Search& search);
   void (*any)(const TopLevel& scene, Search& search);
-  // The same for up to kPacket rays.
-  void (*nearestOfPacket)(const TopLevel& scene, Search* searches, unsigned int count);
-  void (*anyOfPacket)(const TopLevel& scene, Search* searches, unsigned int count);
+  // The same for one to kPacket rays: hits[i], or occluded[i], is what rays[i] finds.
+  void (*nearestOfPacket)(const TopLevel& scene, const Ray* rays, Hit* hits, unsigned int count);
+  void (*anyOfPacket)(
+    const TopLevel& scene, const Ray* rays, std::uint8_t* occluded, unsigned int count);
 };
 
-// `wide`: the processor has AVX2 and fused operations.
-const Kernels& kernelsFor(bool wide);
+// One that the processor has.
+const Kernels& kernelsFor(InstructionSet set);
 
 } // namespace embree
 } // namespace hrt

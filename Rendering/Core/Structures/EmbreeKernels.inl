@@ -1,6 +1,6 @@
 // Single rays through both levels; packets in EmbreePackets.inl. Included once for each instruction
-// set (EmbreeKernels.cpp), which defines HRT_KERNELS, the namespace, HRT_TARGET, the functions'
-// attribute, and HRT_AVX2.
+// set (EmbreeKernels.cpp), which defines HRT_KERNELS, the namespace, HRT_SET, the set's name,
+// HRT_TARGET, the functions' attribute, and HRT_AVX2 and HRT_AVX512, what may be used.
 
 namespace hrt
 {
@@ -14,8 +14,7 @@ namespace HRT_KERNELS
 constexpr unsigned int kLanes = TriangleBlock::kLanes;
 static_assert(WideNode::kWidth == kLanes, "a value's lanes are a node's children");
 
-// --- Boxes
-// ------------------------------------------------------------------------------------------
+// --- Boxes --------------------------------------------------------------------------------------
 
 // A ray as the nodes of a tree want it.
 struct NodeRay
@@ -150,8 +149,7 @@ HRT_LANES void traverse(const WideTree& tree, const Met& ray, float end, Leaves&
   }
 }
 
-// --- Triangles
-// --------------------------------------------------------------------------------------
+// --- Triangles ----------------------------------------------------------------------------------
 
 // The axes of a ray's shear; z: one along which its direction is 1 or -1.
 struct Axes
@@ -167,63 +165,76 @@ struct Axes
 };
 
 // What the sieve wants of a ray: one ray in all lanes, or a ray to a lane.
+template <class V>
 struct SieveRay
 {
-  Floats x, y; // of the origin, along the axes of the shear
-  Floats z;    // the same, forward
-  Floats shearX, shearY;
-  Floats forward; // the sign of the direction's z
+  V x, y; // of the origin, along the axes of the shear
+  V z;    // the same, forward
+  V shearX, shearY;
+  V forward; // the sign of the direction's z
 };
 
 // A triangle to a lane, or one in all lanes; along the axes of the shear.
+template <class V>
 struct SieveCorner
 {
-  Floats x, y, z;
+  V x, y, z;
+};
+
+// Where the rays' searches end, as the sieve asks: after the first depth nothing is met any more,
+// and before the second surely nothing else is.
+template <class V>
+struct SieveEnd
+{
+  V late, before;
+
+  HRT_LANES SieveEnd(V end, const SieveSlack& slack)
+    : late(end + V::all(slack.depth))
+    , before(mulSub(end, V::all(1.0f - 0x1p-21f), V::all(slack.depth)))
+  {
+  }
 };
 
 // The sieve of TriangleBlock.h.
+template <class V>
 struct Sieved
 {
-  Floats bound, inner, outer; // of the edge functions: their bound, the least and the most
-  Floats nearest, farthest;   // of the corners, along the ray
-  Floats depth;               // the bound of that
+  // Of the edge functions: the least of them, or of the three turned about, whichever is more; its
+  // bound.
+  V inside, bound;
+  V nearest, farthest; // of the corners, along the ray
 
-  HRT_LANES Sieved(const SieveCorner& a, const SieveCorner& b, const SieveCorner& c,
-    const SieveRay& ray, const SieveSlack& slack)
+  // `spread(corners)`: at least the larger |x| + |y| of them, relative to the ray.
+  template <class Spread>
+  HRT_LANES Sieved(const SieveCorner<V>& a, const SieveCorner<V>& b, const SieveCorner<V>& c,
+    const SieveRay<V>& ray, const SieveSlack& slack, Spread spread)
   {
-    const Floats az = mulSub(a.z, ray.forward, ray.z), bz = mulSub(b.z, ray.forward, ray.z),
-                 cz = mulSub(c.z, ray.forward, ray.z);
-    const Floats ax = subMul(a.x - ray.x, ray.shearX, az), ay = subMul(a.y - ray.y, ray.shearY, az);
-    const Floats bx = subMul(b.x - ray.x, ray.shearX, bz), by = subMul(b.y - ray.y, ray.shearY, bz);
-    const Floats cx = subMul(c.x - ray.x, ray.shearX, cz), cy = subMul(c.y - ray.y, ray.shearY, cz);
-    const Floats u = mulSub(cx, by, cy * bx), v = mulSub(ax, cy, ay * cx),
-                 w = mulSub(bx, ay, by * ax);
-    const Floats s = most(size(ax) + size(ay), most(size(bx) + size(by), size(cx) + size(cy)));
-    this->bound = mulAdd(all(slack.edge), s, all(slack.floor));
-    this->inner = least(u, least(v, w));
-    this->outer = most(u, most(v, w));
+    const V az = mulSub(a.z, ray.forward, ray.z), bz = mulSub(b.z, ray.forward, ray.z),
+            cz = mulSub(c.z, ray.forward, ray.z);
+    const V ax = subMul(a.x - ray.x, ray.shearX, az), ay = subMul(a.y - ray.y, ray.shearY, az);
+    const V bx = subMul(b.x - ray.x, ray.shearX, bz), by = subMul(b.y - ray.y, ray.shearY, bz);
+    const V cx = subMul(c.x - ray.x, ray.shearX, cz), cy = subMul(c.y - ray.y, ray.shearY, cz);
+    const V u = mulSub(cx, by, cy * bx), v = mulSub(ax, cy, ay * cx), w = mulSub(bx, ay, by * ax);
+    const V most3 = most(u, most(v, w));
+    this->inside = most(least(u, least(v, w)), V::all(0.0f) - most3);
+    this->bound = mulAdd(V::all(slack.edge), spread(ax, ay, bx, by, cx, cy), V::all(slack.floor));
     this->nearest = least(az, least(bz, cz));
     this->farthest = most(az, most(bz, cz));
-    this->depth = all(slack.depth);
   }
 
-  // Lanes that may be hit before `end`; a NaN may.
-  HRT_LANES unsigned int possible(Floats end) const
+  // Lanes that may be hit before the end; a NaN may.
+  HRT_LANES unsigned int possible(const SieveEnd<V>& end, const SieveSlack& slack) const
   {
-    const Floats none = all(0.0f);
-    const unsigned int outside =
-      (less(this->inner, none - this->bound) & less(this->bound, this->outer)) |
-      less(end + this->depth, this->nearest) | less(this->farthest, none - this->depth);
-    return outside ^ ((1u << kLanes) - 1u);
+    const unsigned int outside = less(this->inside, V::all(0.0f) - this->bound) |
+      less(end.late, this->nearest) | less(this->farthest, V::all(-slack.depth));
+    return outside ^ ((1u << V::kLanes) - 1u);
   }
 
   // Lanes that surely are, and not after the true end.
-  HRT_LANES unsigned int sure(Floats end) const
+  HRT_LANES unsigned int sure(const SieveEnd<V>& end, const SieveSlack& slack) const
   {
-    const Floats none = all(0.0f);
-    const Floats before = mulSub(end, all(1.0f - 0x1p-21f), this->depth);
-    return (less(this->bound, this->inner) | less(this->outer, none - this->bound)) &
-      less(this->depth, this->nearest) & less(this->farthest, before);
+    return less(this->bound, this->inside) & less(V::all(slack.depth), this->nearest) &
+      less(this->farthest, end.before);
   }
 };
 
@@ -252,7 +263,7 @@ struct Triangles
   Search& search;
   const TraversalRay& ray;
   const Axes axes;
-  const SieveRay sieveRay;
+  const SieveRay<Floats> sieveRay;
 
   HRT_LANES Triangles(const Hierarchy& h, const Member* m, Search& s, const TraversalRay& r)
     : hierarchy(h)
@@ -266,7 +277,7 @@ struct Triangles
   {
   }
 
-  HRT_LANES SieveCorner corner(const TriangleBlock& block, int i) const
+  HRT_LANES SieveCorner<Floats> corner(const TriangleBlock& block, int i) const
   {
     return { load(block.corner[i][this->axes.x]), load(block.corner[i][this->axes.y]),
       load(block.corner[i][this->axes.z]) };
@@ -277,16 +288,20 @@ struct Triangles
   HRT_LANES float operator()(std::uint32_t number, float end)
   {
     const TriangleBlock& block = this->hierarchy.block(number);
-    const Sieved sieved(this->corner(block, 0), this->corner(block, 1), this->corner(block, 2),
-      this->sieveRay, this->hierarchy.slack());
-    const unsigned int possible = sieved.possible(all(end));
+    const SieveSlack& slack = this->hierarchy.slack();
+    const Sieved<Floats> sieved(this->corner(block, 0), this->corner(block, 1),
+      this->corner(block, 2), this->sieveRay, slack,
+      [](Floats ax, Floats ay, Floats bx, Floats by, Floats cx, Floats cy) HRT_TARGET
+      { return most(size(ax) + size(ay), most(size(bx) + size(by), size(cx) + size(cy))); });
+    const SieveEnd<Floats> sieveEnd(all(end), slack);
+    const unsigned int possible = sieved.possible(sieveEnd, slack);
     if (possible == 0)
     {
       return end;
     }
     if (kAny)
     {
-      const SieveResult lanes = { possible, sieved.sure(all(end)) };
+      const SieveResult lanes = { possible, sieved.sure(sieveEnd, slack) };
       this->search.found = this->hierarchy.any(number, lanes, this->members, this->search);
       return this->search.found ? -1.0f : end;
     }
@@ -297,20 +312,25 @@ struct Triangles
 };
 
 template <bool kAny>
-HRT_TARGET void searchPart(const TopLevel& scene, const Placed& part, Search& search)
+HRT_LANES void searchEntered(
+  const TopLevel& scene, const Placed& part, const TraversalRay& ray, Search& search)
 {
-  TraversalRay ray;
-  if (!part.enter(search, ray))
-  {
-    return;
-  }
   const float end = ray.end(search.end());
   Triangles<kAny> triangles(*part.hierarchy, scene.membersOf(part), search, ray);
   traverse<!kAny>(part.hierarchy->tree(), NodeRay(ray), end, triangles);
 }
 
-// --- Parts
-// ------------------------------------------------------------------------------------------
+template <bool kAny>
+HRT_TARGET void searchPart(const TopLevel& scene, const Placed& part, Search& search)
+{
+  TraversalRay ray;
+  if (part.enter(search, ray))
+  {
+    searchEntered<kAny>(scene, part, ray, search);
+  }
+}
+
+// --- Parts --------------------------------------------------------------------------------------
 
 template <bool kAny>
 struct Parts

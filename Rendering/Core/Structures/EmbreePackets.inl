@@ -1,39 +1,55 @@
 // Sixteen neighbouring rays together. Their hull, a frustum, goes down the tree in place of them,
 // at the cost of one ray; in the leaves it picks the triangles, each of which the sieve then tests
-// against eight rays at once. Rays that do not lie together, by direction or by width, are divided
-// and in the end go singly. Included by EmbreeKernels.inl.
+// against all rays at once. Rays that do not lie together, by direction or by width, go singly.
+// Included by EmbreeKernels.inl.
+
+#include "Rendering/Core/Structures/EmbreePacketRays.inl"
 
 #include "Rendering/Core/Structures/EmbreeFrustum.inl"
 
-// --- Triangles
-// --------------------------------------------------------------------------------------
+// What the rays of a packet look for, shared by all levels of their traversal.
+struct Packet
+{
+  const Ray* given = nullptr;
+  Hit* hits = nullptr;              // their best, where they look for the nearest
+  std::uint8_t* occluded = nullptr; // where any will do
+  // Active are those that are still searching, and `end` is where each of them now ends.
+  SceneRays rays;
+};
+
+#include "Rendering/Core/Structures/EmbreeCandidates.inl"
+
+// --- Triangles ----------------------------------------------------------------------------------
 
 template <bool kAny>
 struct PacketTriangles
 {
   const Hierarchy& hierarchy;
   const Member* const members;
-  Search* const searches;
+  Packet& packet;
   PacketEntry& entry;
   Frustum& frustum;
   Candidates candidates;
-  SieveRay sieveRays[kPacket / kLanes];
+  static constexpr unsigned int kGroups = kPacket / RayFloats::kLanes;
+  SieveRay<RayFloats> sieveRays[kGroups];
+  const std::size_t along[3]; // from one axis of the shear to the next, in a block's corner
 
   HRT_LANES PacketTriangles(
-    const Hierarchy& h, const Member* m, Search* s, PacketEntry& e, Frustum& f)
+    const Hierarchy& h, const Member* m, Packet& p, PacketEntry& e, Frustum& f)
     : hierarchy(h)
     , members(m)
-    , searches(s)
+    , packet(p)
     , entry(e)
     , frustum(f)
-    , candidates(h, m, s, f.rays, HRT_AVX2)
+    , candidates(h, m, p)
+    , along{ std::size_t(f.x) * kLanes, std::size_t(f.y) * kLanes, std::size_t(f.z) * kLanes }
   {
-    const Floats forward = all(f.forward);
-    for (unsigned int half = 0; half < kPacket; half += kLanes)
+    const RayFloats forward = allRays(f.forward);
+    for (unsigned int first = 0; first < kPacket; first += RayFloats::kLanes)
     {
-      this->sieveRays[half / kLanes] = { load(e.origin[f.x].of + half),
-        load(e.origin[f.y].of + half), load(e.origin[f.z].of + half) * forward,
-        load(e.direction[f.x].of + half), load(e.direction[f.y].of + half), forward };
+      this->sieveRays[first / RayFloats::kLanes] = { loadRays(e.origin[f.x].of + first),
+        loadRays(e.origin[f.y].of + first), loadRays(e.origin[f.z].of + first) * forward,
+        loadRays(e.direction[f.x].of + first), loadRays(e.direction[f.y].of + first), forward };
     }
   }
 
@@ -42,109 +58,139 @@ struct PacketTriangles
   HRT_LANES float operator()(std::uint32_t number, float end)
   {
     const TriangleBlock& block = this->hierarchy.block(number);
-    Floats lower[3], upper[3], start;
-    for (int axis = 0; axis < 3; ++axis)
-    {
-      const Floats a = load(block.corner[0][axis]), b = load(block.corner[1][axis]),
-                   c = load(block.corner[2][axis]);
-      lower[axis] = least(a, least(b, c));
-      upper[axis] = most(a, most(b, c));
-    }
-    bool shorter = false;
-    unsigned int met = this->frustum.meet(lower, upper, all(end), start);
-    for (; met != 0; met &= met - 1)
-    {
-      const int lane = lowest(met);
-      if (block.triangle[lane] != kNoTriangle)
+    const Frustum::Met met = this->frustum.meet(
+      [&block](int side, int axis) HRT_TARGET
       {
-        shorter = this->test(number, block, lane) || shorter;
-      }
+        const Floats a = load(block.corner[0][axis]), b = load(block.corner[1][axis]),
+                     c = load(block.corner[2][axis]);
+        return side == 0 ? least(a, least(b, c)) : most(a, most(b, c));
+      },
+      all(end));
+    unsigned int lanes = met.boxes & ~equal(block.triangle, kNoTriangle);
+    if (lanes == 0)
+    {
+      return end;
+    }
+    alignas(sizeof(Floats)) float spread[kLanes];
+    store(spread, met.spread);
+    RayFloats farthest[kGroups];
+    std::fill(farthest, farthest + kGroups, allRays(std::numeric_limits<float>::infinity()));
+    bool shorter = false;
+    for (; lanes != 0; lanes &= lanes - 1)
+    {
+      const int lane = lowest(lanes);
+      shorter = this->test(number, block, lane, spread[lane], farthest) || shorter;
+    }
+    if (!kAny)
+    {
+      shorter = this->shorten(farthest) || shorter;
     }
     return !shorter ? end : (this->frustum.rays == 0 ? -1.0f : this->frustum.end(this->entry));
   }
 
+  // Decides what has been gathered. Whether some ray's search ends earlier now.
   HRT_LANES bool decide(unsigned int least)
   {
     const unsigned int nearer = this->candidates.decide(least);
     for (unsigned int rest = nearer; rest != 0; rest &= rest - 1)
     {
       const int i = lowest(rest);
-      this->entry.end.of[i] =
-        std::min(this->entry.end.of[i], this->entry.endOf(i, this->searches[i].best.t));
+      const double t = this->packet.hits[i].t;
+      this->packet.rays.end.of[i] = t;
+      this->entry.end.of[i] = std::min(this->entry.end.of[i], this->entry.endOf(i, t));
     }
     return nearer != 0;
   }
 
 private:
-  HRT_LANES SieveCorner corner(const TriangleBlock& block, int i, int lane) const
+  HRT_LANES SieveCorner<RayFloats> corner(const TriangleBlock& block, int i, int lane) const
   {
-    return { all(block.corner[i][this->frustum.x][lane]),
-      all(block.corner[i][this->frustum.y][lane]), all(block.corner[i][this->frustum.z][lane]) };
+    const float* const axes = block.corner[i][0] + lane;
+    return { allRays(axes[this->along[0]]), allRays(axes[this->along[1]]),
+      allRays(axes[this->along[2]]) };
   }
 
-  // Whether some ray's search ends earlier now.
-  HRT_LANES bool test(std::uint32_t number, const TriangleBlock& block, int lane)
+  // A triangle that is surely hit ends the search at its farthest corner, even before the exact
+  // kernel has said where the hit is. Whether it does for some ray.
+  HRT_LANES bool shorten(const RayFloats (&farthest)[kGroups])
   {
-    const SieveCorner a = this->corner(block, 0, lane), b = this->corner(block, 1, lane),
-                      c = this->corner(block, 2, lane);
-    SieveResult met;
-    PerRay<float> farthest;
-    for (unsigned int half = 0; half < kPacket; half += kLanes)
+    const RayFloats depth = allRays(2.0f * this->hierarchy.slack().depth);
+    unsigned int shorter = 0;
+    for (unsigned int group = 0; group < kGroups; ++group)
     {
-      const Sieved sieved(a, b, c, this->sieveRays[half / kLanes], this->hierarchy.slack());
-      const Floats end = load(this->entry.end.of + half);
-      if (const unsigned int possible = sieved.possible(end))
-      {
-        met.possible |= possible << half;
-        met.sure |= sieved.sure(end) << half;
-        store(farthest.of + half, sieved.farthest);
-      }
+      const RayFloats after = (farthest[group] + depth) * allRays(1.0f + 0x1p-22f);
+      float* const at = this->entry.end.of + group * RayFloats::kLanes;
+      const RayFloats end = loadRays(at);
+      shorter |= less(after, end);
+      store(at, least(after, end));
     }
-    met.possible &= this->frustum.rays;
-    return met.possible != 0 &&
-      (kAny ? this->occlude(number, lane, met) : this->intersect(number, lane, met, farthest));
+    return shorter != 0;
+  }
+
+  // Whether some ray's search ends earlier now. `farthest` becomes, for each ray, the least that is
+  // the most of a triangle surely hit. It ends no search before the block is done: were each of its
+  // triangles to wait for the one before, the time would be that of the waiting.
+  HRT_LANES bool test(std::uint32_t number, const TriangleBlock& block, int lane, float spread,
+    RayFloats (&farthest)[kGroups])
+  {
+    const Member& member = this->hierarchy.memberOf(number, lane, this->members);
+    if (!(kAny ? member.castsShadow : member.visibleToRays))
+    {
+      return false;
+    }
+    unsigned int others = this->frustum.rays;
+    if (this->packet.rays.leave)
+    {
+      others &= ~this->packet.rays.leaving(member.firstTriangle + block.triangle[lane]);
+    }
+    const SieveCorner<RayFloats> a = this->corner(block, 0, lane), b = this->corner(block, 1, lane),
+                                 c = this->corner(block, 2, lane);
+    const SieveSlack& slack = this->hierarchy.slack();
+    SieveResult met;
+    for (unsigned int group = 0; group < kGroups; ++group)
+    {
+      const unsigned int first = group * RayFloats::kLanes;
+      const Sieved<RayFloats> sieved(a, b, c, this->sieveRays[group], slack,
+        [spread](auto...) HRT_TARGET { return allRays(spread); });
+      const SieveEnd<RayFloats> end(loadRays(this->entry.end.of + first), slack);
+      met.possible |= sieved.possible(end, slack) << first & others;
+      const unsigned int sure = sieved.sure(end, slack) & others >> first;
+      met.sure |= sure << first;
+      farthest[group] = where(sure, least(farthest[group], sieved.farthest), farthest[group]);
+    }
+    if (met.possible == 0)
+    {
+      return false;
+    }
+    return kAny ? this->occlude(number, lane, met) : this->propose(number, lane, met.possible);
   }
 
   HRT_LANES bool occlude(std::uint32_t number, int lane, const SieveResult& met)
   {
-    unsigned int found = 0;
-    for (unsigned int rest = met.possible; rest != 0; rest &= rest - 1)
+    unsigned int found = met.sure;
+    for (unsigned int rest = met.possible & ~met.sure; rest != 0; rest &= rest - 1)
     {
       const int i = lowest(rest);
-      const SieveResult one = { 1u << lane, (met.sure >> i & 1u) << lane };
-      this->searches[i].found = this->hierarchy.any(number, one, this->members, this->searches[i]);
-      found |= this->searches[i].found ? 1u << i : 0u;
+      Search search(this->packet.given[i]);
+      found |= this->hierarchy.any(number, { 1u << lane, 0 }, this->members, search) ? 1u << i : 0u;
     }
-    if (found != 0)
+    if (found == 0)
     {
-      this->frustum.keep(this->frustum.rays & ~found);
+      return false;
     }
-    return found != 0;
+    for (unsigned int rest = found; rest != 0; rest &= rest - 1)
+    {
+      this->packet.occluded[lowest(rest)] = 1;
+    }
+    this->packet.rays.active &= ~found;
+    this->frustum.keep(this->frustum.rays & ~found);
+    return true;
   }
 
-  // A triangle that is surely hit ends the search at its farthest corner, even before the exact
-  // kernel has said where the hit is.
-  HRT_LANES bool intersect(
-    std::uint32_t number, int lane, const SieveResult& met, const PerRay<float>& farthest)
+  HRT_LANES bool propose(std::uint32_t number, int lane, unsigned int possible)
   {
-    bool shorter = false;
-    for (unsigned int rest = met.possible; rest != 0; rest &= rest - 1)
-    {
-      const int i = lowest(rest);
-      if (this->candidates.add(number, lane, static_cast<unsigned int>(i)) &&
-        (met.sure >> i & 1u) != 0)
-      {
-        const float end =
-          (farthest.of[i] + 2.0f * this->hierarchy.slack().depth) * (1.0f + 0x1p-22f);
-        shorter = shorter || end < this->entry.end.of[i];
-        this->entry.end.of[i] = std::min(this->entry.end.of[i], end);
-      }
-    }
-    if (this->candidates.enough())
-    {
-      shorter = this->decide(ExactLanes::kLanes) || shorter;
-    }
-    return shorter;
+    this->candidates.add(number, lane, possible);
+    return this->candidates.enough() && this->decide(kLanes);
   }
 };
 
@@ -154,61 +200,73 @@ constexpr int kFewRays = 2;
 // its rays meets. Measured; between a half and double of it nothing changes much.
 constexpr float kWidest = 1.0f / 16.0f;
 
-// Traces the rays that enter a tree: `packet(frustum)` all of them, if they lie together, else
-// `packet(i)` one after the other.
-template <class Packet>
-HRT_TARGET void traceTogether(const PacketEntry& entry, const TraversalBox& box, Packet& packet)
+// Traces the rays that enter a tree: `tracer(frustum)` all of them, if they lie together, else
+// `tracer(i)` one after the other.
+template <class Tracer>
+HRT_TARGET void traceTogether(const PacketEntry& entry, const TraversalBox& box, Tracer& tracer)
 {
   Frustum frustum;
   if (__builtin_popcount(entry.active) > kFewRays && frustum.enclose(entry, box) &&
     frustum.width <= kWidest * static_cast<float>(box.reach()))
   {
-    packet(frustum);
+    tracer(frustum);
     return;
   }
   for (unsigned int rest = entry.active; rest != 0; rest &= rest - 1)
   {
-    packet(lowest(rest));
+    tracer(lowest(rest));
   }
 }
 
+// One ray of the packet by itself: `search` does it.
+template <bool kAny, class Searcher>
+HRT_LANES void searchSingly(Packet& packet, int i, Searcher searcher)
+{
+  Search search(packet.given[i]);
+  if (kAny)
+  {
+    searcher(search);
+    packet.occluded[i] = search.found;
+    packet.rays.active &= search.found ? ~(1u << i) : ~0u;
+    return;
+  }
+  search.best = packet.hits[i];
+  searcher(search);
+  packet.hits[i] = search.best;
+  packet.rays.end.of[i] = search.end();
+}
+
 template <bool kAny>
-struct PartPacket
+struct PartTracer
 {
   const TopLevel& scene;
   const Placed& part;
-  Search* searches;
+  const PacketRays& local;
+  Packet& packet;
   PacketEntry& entry;
 
   HRT_TARGET void operator()(Frustum& frustum)
   {
     const Hierarchy& hierarchy = *this->part.hierarchy;
     PacketTriangles<kAny> triangles(
-      hierarchy, this->scene.membersOf(this->part), this->searches, this->entry, frustum);
+      hierarchy, this->scene.membersOf(this->part), this->packet, this->entry, frustum);
     traverse<!kAny>(hierarchy.tree(), frustum, frustum.end(this->entry), triangles);
     triangles.decide(1);
   }
   HRT_TARGET void operator()(int i)
   {
-    searchPart<kAny>(this->scene, this->part, this->searches[i]);
+    const TraversalRay ray = this->entry.ray(this->local, static_cast<unsigned int>(i));
+    searchSingly<kAny>(this->packet, i,
+      [&](Search& search) HRT_TARGET
+      { searchEntered<kAny>(this->scene, this->part, ray, search); });
   }
 };
 
-// --- Parts
-// ------------------------------------------------------------------------------------------
+// --- Parts --------------------------------------------------------------------------------------
 
-template <bool kAny>
-HRT_TARGET void searchPart(
-  const TopLevel& scene, const Placed& part, Search* searches, const PacketRays& rays)
-{
-  PacketEntry entry(part.hierarchy->entry(), rays);
-  PartPacket<kAny> packet{ scene, part, searches, entry };
-  traceTogether(entry, part.hierarchy->box(), packet);
-}
-
-// The rays in the part's coordinates, from those in the scene's; `which` of them.
-HRT_TARGET void place(const Placed& part, const PacketRays& inScene, const Search* searches,
-  unsigned int which, PacketRays& rays)
+// The packet's rays in the part's coordinates; `which` of them.
+HRT_TARGET void place(
+  const Placed& part, const PacketRays& inScene, unsigned int which, PacketRays& rays)
 {
   const glm::dmat4& m = part.fromScene;
   for (int axis = 0; axis < 3; ++axis)
@@ -222,124 +280,105 @@ HRT_TARGET void place(const Placed& part, const PacketRays& inScene, const Searc
         z * inScene.origin[2].of[i] + shift;
     }
   }
-  rays.active = which;
-  for (unsigned int i = 0; i < kPacket; ++i)
+  rays.end = inScene.end;
+  rays.active = part.onlyShifted ? which : which & rays.usable();
+}
+
+// Those of the packet's rays in the part, as far as they go.
+template <bool kAny>
+HRT_TARGET void searchPart(
+  const TopLevel& scene, const Placed& part, Packet& packet, unsigned int which)
+{
+  PacketRays local;
+  place(part, packet.rays, which, local);
+  if (local.active != 0)
   {
-    rays.end.of[i] = inScene.end.of[i];
-  }
-  for (unsigned int rest = which; rest != 0; rest &= rest - 1)
-  {
-    const int i = lowest(rest);
-    rays.end.of[i] = searches[i].end();
-    const glm::dvec3 origin(rays.origin[0].of[i], rays.origin[1].of[i], rays.origin[2].of[i]);
-    const glm::dvec3 direction(
-      rays.direction[0].of[i], rays.direction[1].of[i], rays.direction[2].of[i]);
-    if (!part.onlyShifted && !isUsable(origin, direction))
-    {
-      rays.active &= ~(1u << i);
-    }
+    PacketEntry entry(part.hierarchy->entry(), local);
+    PartTracer<kAny> tracer{ scene, part, local, packet, entry };
+    traceTogether(entry, part.hierarchy->box(), tracer);
   }
 }
 
 template <bool kAny>
-struct PacketParts;
-
-template <bool kAny>
-struct PacketLeaves
-{
-  PacketParts<kAny>& parts;
-
-  HRT_LANES void fetch(std::uint32_t) const {}
-
-  HRT_LANES float operator()(std::uint32_t leaf, float end) { return this->parts.visit(leaf, end); }
-};
-
-template <bool kAny>
-struct PacketParts
+struct SceneTracer
 {
   const TopLevel& scene;
-  Search* searches;
-  const PacketRays& rays;
+  Packet& packet;
   PacketEntry& entry;
   Frustum* frustum = nullptr;
 
   HRT_TARGET void operator()(Frustum& hull)
   {
     this->frustum = &hull;
-    PacketLeaves<kAny> leaves{ *this };
-    traverse<!kAny>(this->scene.tree(), hull, hull.end(this->entry), leaves);
+    traverse<!kAny>(this->scene.tree(), hull, hull.end(this->entry), *this);
   }
-  HRT_TARGET void operator()(int i) { searchScene<kAny>(this->scene, this->searches[i]); }
+  HRT_TARGET void operator()(int i)
+  {
+    searchSingly<kAny>(this->packet, i,
+      [this](Search& search) HRT_TARGET { searchScene<kAny>(this->scene, search); });
+  }
 
-  HRT_LANES float visit(std::uint32_t leaf, float end)
+  HRT_LANES void fetch(std::uint32_t) const {}
+
+  HRT_LANES float operator()(std::uint32_t leaf, float end)
   {
     const Placed& part = this->scene.leaf(leaf);
     if (!(kAny ? part.castsShadow : part.visibleToRays))
     {
       return end;
     }
-    PacketRays local;
-    place(part, this->rays, this->searches, this->frustum->rays, local);
-    searchPart<kAny>(this->scene, part, this->searches, local);
-    unsigned int left = this->frustum->rays;
-    for (unsigned int rest = left; rest != 0; rest &= rest - 1)
-    {
-      const int i = lowest(rest);
-      left &= this->searches[i].found ? ~(1u << i) : ~0u;
-      this->entry.end.of[i] = this->entry.endOf(i, this->searches[i].end());
-    }
+    searchPart<kAny>(this->scene, part, this->packet, this->frustum->rays);
+    const unsigned int left = this->frustum->rays & this->packet.rays.active;
     if (kAny)
     {
+      if (left == this->frustum->rays)
+      {
+        return end;
+      }
       this->frustum->keep(left);
+      return left == 0 ? -1.0f : this->frustum->end(this->entry);
     }
-    return left == 0 ? -1.0f : this->frustum->end(this->entry);
+    for (unsigned int i = 0; i < kPacket; ++i)
+    {
+      this->entry.end.of[i] = this->entry.endOf(i, this->packet.rays.end.of[i]);
+    }
+    return this->frustum->end(this->entry);
   }
 };
 
 template <bool kAny>
-HRT_TARGET void searchScene(const TopLevel& scene, Search* searches, unsigned int count)
+HRT_TARGET void searchScene(const TopLevel& scene, Packet& packet, unsigned int count)
 {
-  PacketRays rays;
-  for (unsigned int i = 0; i < count; ++i)
-  {
-    rays.active |= searches[i].usable() ? 1u << i : 0u;
-  }
-  if (rays.active == 0 || scene.size() == 0)
+  if (!packet.rays.take(packet.given, count) || scene.size() == 0)
   {
     return;
-  }
-  const int first = lowest(rays.active);
-  for (unsigned int i = 0; i < kPacket; ++i)
-  {
-    const Ray& ray = *searches[(rays.active >> i & 1u) != 0 ? i : first].ray;
-    for (int axis = 0; axis < 3; ++axis)
-    {
-      rays.origin[axis].of[i] = ray.origin[axis];
-      rays.direction[axis].of[i] = ray.direction[axis];
-    }
-    rays.end.of[i] = ray.tMaximum;
   }
   if (scene.size() == 1)
   {
-    PacketRays local;
-    place(scene.part(0), rays, searches, rays.active, local);
-    if (local.active != 0)
-    {
-      searchPart<kAny>(scene, scene.part(0), searches, local);
-    }
+    searchPart<kAny>(scene, scene.part(0), packet, packet.rays.active);
     return;
   }
-  PacketEntry entry(scene.entry(), rays);
-  PacketParts<kAny> parts{ scene, searches, rays, entry };
-  traceTogether(entry, scene.box(), parts);
+  PacketEntry entry(scene.entry(), packet.rays);
+  SceneTracer<kAny> tracer{ scene, packet, entry };
+  traceTogether(entry, scene.box(), tracer);
 }
 
-HRT_TARGET void nearestOfPacket(const TopLevel& scene, Search* searches, unsigned int count)
+HRT_TARGET void nearestOfPacket(
+  const TopLevel& scene, const Ray* rays, Hit* hits, unsigned int count)
 {
-  searchScene<false>(scene, searches, count);
+  std::fill(hits, hits + count, Hit());
+  Packet packet;
+  packet.given = rays;
+  packet.hits = hits;
+  searchScene<false>(scene, packet, count);
 }
 
-HRT_TARGET void anyOfPacket(const TopLevel& scene, Search* searches, unsigned int count)
+HRT_TARGET void anyOfPacket(
+  const TopLevel& scene, const Ray* rays, std::uint8_t* occluded, unsigned int count)
 {
-  searchScene<true>(scene, searches, count);
+  std::fill(occluded, occluded + count, std::uint8_t(0));
+  Packet packet;
+  packet.given = rays;
+  packet.occluded = occluded;
+  searchScene<true>(scene, packet, count);
 }

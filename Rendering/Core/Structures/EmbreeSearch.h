@@ -22,6 +22,18 @@ struct Member
   bool castsShadow = false;
 };
 
+// True when the hit becomes the best. The order of traversal must not show: of equal hits the smallest
+// number wins.
+inline bool offer(const Hit& hit, Hit& best)
+{
+  if (hit.t > best.t || (hit.t == best.t && hit.triangle >= best.triangle))
+  {
+    return false;
+  }
+  best = hit;
+  return true;
+}
+
 // What one ray looks for, shared by all levels of its traversal.
 struct Search
 {
@@ -40,17 +52,6 @@ struct Search
   bool usable() const
   {
     return this->ray->hasLength() && isUsable(this->ray->origin, this->ray->direction);
-  }
-  // True when the hit is the best now. The order of traversal must not show: of equal hits the
-  // smallest number wins.
-  bool offer(const Hit& hit)
-  {
-    if (hit.t > this->best.t || (hit.t == this->best.t && hit.triangle >= this->best.triangle))
-    {
-      return false;
-    }
-    this->best = hit;
-    return true;
   }
   double end() const { return this->best.valid() ? this->best.t : this->ray->tMaximum; }
 };

@@ -68,7 +68,7 @@ struct EmbreeStructure::Implementation
 
   explicit Implementation(const std::string& configuration)
     : device(configuration)
-    , kernels(embree::kernelsFor(this->device.wide()))
+    , kernels(embree::kernelsFor(this->device.instructionSet()))
   {
   }
 
@@ -297,24 +297,19 @@ bool EmbreeStructure::occluded(const Ray& ray) const
 namespace
 {
 
-// The rays of a stream in packets: `take(search, i)` gets every ray's result.
-template <class Trace, class Take>
+// The rays of a stream in packets.
+template <class Trace, class Result>
 void tracePackets(
-  const embree::TopLevel& top, Trace trace, const Ray* rays, std::size_t count, Take take)
+  const embree::TopLevel& top, Trace trace, const Ray* rays, Result* results, std::size_t count)
 {
   for (std::size_t first = 0; first < count; first += embree::kPacket)
   {
-    const std::size_t n = std::min<std::size_t>(embree::kPacket, count - first);
-    embree::Search searches[embree::kPacket];
-    for (std::size_t i = 0; i < n; ++i)
+    const std::size_t end = std::min(first + embree::kPacket, count);
+    for (std::size_t next = end; next < std::min(end + embree::kPacket, count); ++next)
     {
-      searches[i].ray = rays + first + i;
+      __builtin_prefetch(rays + next);
     }
-    trace(top, searches, static_cast<unsigned int>(n));
-    for (std::size_t i = 0; i < n; ++i)
-    {
-      take(searches[i], first + i);
-    }
+    trace(top, rays + first, results + first, static_cast<unsigned int>(end - first));
   }
 }
 
@@ -327,8 +322,7 @@ void EmbreeStructure::intersect(const Ray* rays, Hit* hits, std::size_t count, R
     Structure::intersect(rays, hits, count, order);
     return;
   }
-  tracePackets(*this->Impl->top, this->Impl->kernels.nearestOfPacket, rays, count,
-    [hits](const embree::Search& search, std::size_t i) { hits[i] = search.best; });
+  tracePackets(*this->Impl->top, this->Impl->kernels.nearestOfPacket, rays, hits, count);
 }
 
 void EmbreeStructure::occluded(
@@ -339,8 +333,7 @@ void EmbreeStructure::occluded(
     Structure::occluded(rays, occluded, count, order);
     return;
   }
-  tracePackets(*this->Impl->top, this->Impl->kernels.anyOfPacket, rays, count,
-    [occluded](const embree::Search& search, std::size_t i) { occluded[i] = search.found; });
+  tracePackets(*this->Impl->top, this->Impl->kernels.anyOfPacket, rays, occluded, count);
 }
 
 } // namespace hrt

@@ -30,7 +30,7 @@ struct Placed
   }
 
   // The ray as the hierarchy's tree sees it; false when it misses it.
-  bool enter(const Search& search, TraversalRay& local) const
+  HRT_ALWAYS_INLINE bool enter(const Search& search, TraversalRay& local) const
   {
     const Ray& ray = *search.ray;
     const glm::dvec3 shift(this->fromScene[3]);

@@ -6,10 +6,8 @@
 #include <limits>
 
 #if defined(__GNUC__)
-#define HRT_INLINE inline __attribute__((always_inline))
 #define HRT_NEVER_INLINE __attribute__((noinline))
 #else
-#define HRT_INLINE inline
 #define HRT_NEVER_INLINE
 #endif
 
@@ -41,7 +39,7 @@ struct Rows
 {
   double of[3][4];
 
-  HRT_INLINE Rows(const glm::dmat4& m, const int (&axes)[3])
+  HRT_ALWAYS_INLINE Rows(const glm::dmat4& m, const int (&axes)[3])
   {
     for (int k = 0; k < 3; ++k)
     {
@@ -56,7 +54,7 @@ struct Rows
 struct Axes
 {
   int of[3];
-  HRT_INLINE explicit Axes(int longest)
+  HRT_ALWAYS_INLINE explicit Axes(int longest)
     : of{ longest == 2 ? 0 : longest + 1, longest == 0 ? 2 : longest - 1, longest }
   {
   }
@@ -72,7 +70,7 @@ struct Edges
 
   // `at(corner, axis)`: the position; `from(k)`: the ray's origin, along the k-th of the axes.
   template <class At, class From>
-  HRT_INLINE Edges(const Rows& rows, At at, From from, double shearX, double shearY)
+  HRT_ALWAYS_INLINE Edges(const Rows& rows, At at, From from, double shearX, double shearY)
   {
     double corner[3][3];
     for (int i = 0; i < 3; ++i)
@@ -100,13 +98,13 @@ struct Edges
     this->b = b0 - b1;
     this->c = c0 - c1;
     this->inside = this->agree();
-    const double products = std::fabs(a0) + std::fabs(a1) + std::fabs(b0) + std::fabs(b1) +
-      std::fabs(c0) + std::fabs(c1);
+    const double products =
+      std::fabs(a0) + std::fabs(a1) + std::fabs(b0) + std::fabs(b1) + std::fabs(c0) + std::fabs(c1);
     this->cancelled =
       this->inside & !(std::fabs(this->a + this->b + this->c) >= kCancelled * products);
   }
 
-  HRT_INLINE bool agree() const
+  HRT_ALWAYS_INLINE bool agree() const
   {
     return ((this->a >= 0.0) & (this->b >= 0.0) & (this->c >= 0.0)) |
       ((this->a <= 0.0) & (this->b <= 0.0) & (this->c <= 0.0));
@@ -121,7 +119,7 @@ struct Edges
   }
 
   // The hit's t, u, v; false when it is not before `last` or is no number.
-  HRT_INLINE bool solve(double scale, double last, double& t, double& u, double& v) const
+  HRT_ALWAYS_INLINE bool solve(double scale, double last, double& t, double& u, double& v) const
   {
     // Outside nothing is divided by zero, as the kernel divides only inside.
     const double determinant = this->inside ? this->a + this->b + this->c : 1.0;
@@ -137,7 +135,8 @@ struct Edges
 };
 
 // Of one lane, with all it takes.
-HRT_INLINE Edges edgesOf(const ExactLanes& lanes, const Rows& rows, const Axes& axes, unsigned int i)
+HRT_ALWAYS_INLINE Edges edgesOf(
+  const ExactLanes& lanes, const Rows& rows, const Axes& axes, unsigned int i)
 {
   const double along = lanes.direction[axes.of[2]][i];
   return Edges(
@@ -147,8 +146,8 @@ HRT_INLINE Edges edgesOf(const ExactLanes& lanes, const Rows& rows, const Axes& 
 }
 
 // Decides the lanes again that have to be refined, one by one: they are rare.
-HRT_NEVER_INLINE unsigned int refineLanes(ExactLanes& lanes, const Rows& rows, const Axes& axes,
-  unsigned int cancelled, unsigned int hits)
+HRT_NEVER_INLINE unsigned int refineLanes(
+  ExactLanes& lanes, const Rows& rows, const Axes& axes, unsigned int cancelled, unsigned int hits)
 {
   for (; cancelled != 0; cancelled &= cancelled - 1)
   {
@@ -156,14 +155,14 @@ HRT_NEVER_INLINE unsigned int refineLanes(ExactLanes& lanes, const Rows& rows, c
     Edges edges = edgesOf(lanes, rows, axes, i);
     edges.refine();
     const bool hit = edges.inside &&
-      edges.solve(1.0 / lanes.direction[axes.of[2]][i], lanes.last[i], lanes.t[i], lanes.u[i],
-        lanes.v[i]);
+      edges.solve(
+        1.0 / lanes.direction[axes.of[2]][i], lanes.last[i], lanes.t[i], lanes.u[i], lanes.v[i]);
     hits = hit ? hits | 1u << i : hits & ~(1u << i);
   }
   return hits;
 }
 
-HRT_INLINE unsigned int hitLanes(ExactLanes& lanes, const glm::dmat4& m, int longest)
+HRT_ALWAYS_INLINE unsigned int hitLanes(ExactLanes& lanes, const glm::dmat4& m, int longest)
 {
   const Axes axes(longest);
   const Rows rows(m, axes.of);
@@ -197,26 +196,32 @@ HRT_INLINE unsigned int hitLanes(ExactLanes& lanes, const glm::dmat4& m, int lon
   return again == 0 ? result : refineLanes(lanes, rows, axes, again, result);
 }
 
-unsigned int hitNarrow(ExactLanes& lanes, const glm::dmat4& m, int longest)
+unsigned int hitBase(ExactLanes& lanes, const glm::dmat4& m, int longest)
 {
   return hitLanes(lanes, m, longest);
 }
 
 #if defined(__GNUC__) && defined(__x86_64__)
-__attribute__((target("avx2"))) unsigned int hitWide(
+__attribute__((target("avx2"))) unsigned int hitAvx2(
+  ExactLanes& lanes, const glm::dmat4& m, int longest)
+{
+  return hitLanes(lanes, m, longest);
+}
+__attribute__((target("avx512f,avx512vl,avx512dq"))) unsigned int hitAvx512(
   ExactLanes& lanes, const glm::dmat4& m, int longest)
 {
   return hitLanes(lanes, m, longest);
 }
 #else
-constexpr auto hitWide = hitNarrow;
+constexpr auto hitAvx2 = hitBase, hitAvx512 = hitBase;
 #endif
 
 } // namespace
 
-unsigned int ExactLanes::hit(const glm::dmat4& toScene, int longest, bool wide)
+unsigned int ExactLanes::hit(const glm::dmat4& toScene, int longest, InstructionSet set)
 {
-  return wide ? hitWide(*this, toScene, longest) : hitNarrow(*this, toScene, longest);
+  constexpr decltype(&hitBase) all[] = { &hitBase, &hitAvx2, &hitAvx512 };
+  return all[static_cast<std::size_t>(set)](*this, toScene, longest);
 }
 
 bool exactHit(const ExactShear& shear, const glm::dvec3& origin, double last,

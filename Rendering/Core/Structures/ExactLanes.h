@@ -1,11 +1,11 @@
 // The exact kernel of Geometry/TriangleTest.h once more, for the hottest place: on triangles as
 // hierarchies keep them, alone or for eight pairs of a ray and a triangle at once. The same
 // operations in the same order, hence the same bits and the same proof; the tests compare the two
-// bit by bit. Like the kernel it is compiled with -ffp-contract=off, and for AVX2 without fused
-// operations.
+// bit by bit. Like the kernel it is compiled with -ffp-contract=off: AVX-512 has fused operations.
 #pragma once
 
 #include "Rendering/Core/Geometry/TriangleTest.h"
+#include "Rendering/Core/Structures/InstructionSet.h"
 
 namespace hrt
 {
@@ -43,17 +43,17 @@ struct ExactLanes
   static constexpr unsigned int kLanes = 8;
 
   // In: usable rays, in scene coordinates, and the triangles' positions.
-  alignas(32) double origin[3][kLanes];
-  alignas(32) double direction[3][kLanes];
-  alignas(32) double last[kLanes];           // the ray's tMaximum
-  alignas(32) double position[3][3][kLanes]; // corner, axis
+  alignas(64) double origin[3][kLanes];
+  alignas(64) double direction[3][kLanes];
+  alignas(64) double last[kLanes];          // the ray's tMaximum
+  alignas(64) float position[3][3][kLanes]; // corner, axis
 
   // Out.
-  alignas(32) double t[kLanes], u[kLanes], v[kLanes];
+  alignas(64) double t[kLanes], u[kLanes], v[kLanes];
 
   // The lanes that hit, as bits. All triangles are placed by the one matrix; `longest` is the
   // longest axis of all directions.
-  unsigned int hit(const glm::dmat4& toScene, int longest, bool wide);
+  unsigned int hit(const glm::dmat4& toScene, int longest, InstructionSet set);
 };
 
 } // namespace hrt

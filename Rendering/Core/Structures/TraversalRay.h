@@ -4,6 +4,7 @@
 #pragma once
 
 #include "Rendering/Core/Snapshot.h"
+#include "Rendering/Core/Structures/InstructionSet.h"
 
 #include <algorithm>
 #include <cmath>
@@ -89,7 +90,7 @@ struct TraversalRay
 };
 
 // A finite ray whose direction is not zero, by the exact kernel's rule: some component is normal.
-inline bool isUsable(const glm::dvec3& origin, const glm::dvec3& direction)
+HRT_ALWAYS_INLINE bool isUsable(const glm::dvec3& origin, const glm::dvec3& direction)
 {
   // Asked without arithmetic, which would raise floating-point exceptions in hosts that trap them.
   for (int axis = 0; axis < 3; ++axis)
@@ -113,8 +114,8 @@ inline glm::dvec3 inUnitsOf(double longest, const glm::dvec3& direction)
 // False when the usable ray, up to tMaximum, misses the grown outer box. The bound above holds for
 // origins up to 2^26 reaches away: farther, the rounding of the entry point is no longer small
 // beside the padding.
-inline bool enterBox(const EntryBox& box, const glm::dvec3& origin, const glm::dvec3& direction,
-  double tMaximum, TraversalRay& ray)
+HRT_ALWAYS_INLINE bool enterBox(const EntryBox& box, const glm::dvec3& origin,
+  const glm::dvec3& direction, double tMaximum, TraversalRay& ray)
 {
   const glm::dvec3 lengths = glm::abs(direction);
   ray.scale = std::max({ lengths.x, lengths.y, lengths.z });

@@ -10,7 +10,7 @@
 //   shear's rounding times a depth of 2 R, the rounding of a product of 2 R and of a difference of
 //   4 R; an edge function, with s the larger |x| + |y| of a corner, by 2 * 16 R e * s for the
 //   factors, 2 (16 R e)^2 for their errors' products and 4 e * 4 R * s for three roundings.
-// Together 48 R e * (s + 16 R e). The rest of 64 is for everything done in double, the kernel's own
+// Together 48 R e * (s + 16 R e), where a larger s does as well. The rest of 64 is for everything done in double, the kernel's own
 // roundings included: about a million times finer, unless a matrix is so skewed that inverting it
 // loses that (kLargestCondition in Grouping.h keeps such parts out of hierarchies of their own).
 #pragma once

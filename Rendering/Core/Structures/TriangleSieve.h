@@ -3,6 +3,7 @@
 // EmbreeKernels.inl, where rays too lie side by side.
 #pragma once
 
+#include "Rendering/Core/Structures/InstructionSet.h"
 #include "Rendering/Core/Structures/TriangleBlock.h"
 
 #include <cmath>
@@ -11,13 +12,6 @@
 
 namespace hrt
 {
-
-// Inlined into callers that are compiled for several instruction sets.
-#if defined(__GNUC__)
-#define HRT_ALWAYS_INLINE inline __attribute__((always_inline))
-#else
-#define HRT_ALWAYS_INLINE inline
-#endif
 
 // A traversal ray as the sieve wants it.
 struct SieveRay

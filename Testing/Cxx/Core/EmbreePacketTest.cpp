@@ -88,6 +88,37 @@ TEST_P(EmbreePacket, UnusableRaysSpoilNoOther)
   }
 }
 
+// What decides for a packet by its hull must hold for large triangles as well, which lie around where the
+// rays begin, and at their edges, where a bound too small would show.
+TEST_P(EmbreePacket, AmongLargeTrianglesAlongTheirEdges)
+{
+  Random random(43);
+  Snapshot s;
+  std::vector<glm::vec3> corners;
+  for (int i = 0; i < 3 * 60; ++i)
+  {
+    corners.emplace_back(random.inBox(3.0));
+  }
+  scenes::addPart(s, scenes::makeGeometry(corners));
+  EmbreeStructure embree(GetParam());
+  embree.update(s);
+  scenes::BruteForce reference;
+  reference.update(s);
+  for (int i = 0; i < 500; ++i)
+  {
+    const Corners c = checks::cornersOf(s, static_cast<TriangleId>(random.below(s.triangleCount)));
+    const glm::dvec3 eye = random.inBox(2.0);
+    const double from = random(0.0, 1.0);
+    std::vector<Ray> rays(16);
+    for (Ray& ray : rays)
+    {
+      ray.origin = eye + random.inBox(1e-3);
+      ray.direction = glm::mix(c.a, c.b, from + random(0.0, 0.02)) - ray.origin;
+    }
+    EXPECT_EQ(checks::wrongAnswers(embree, reference, rays), 0);
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(InstructionSets, EmbreePacket,
   ::testing::Values("", "isa=sse2", "isa=sse4.2", "isa=avx", "isa=avx2", "isa=avx512"));
 
