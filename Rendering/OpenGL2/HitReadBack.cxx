@@ -2,6 +2,7 @@
 #include "Rendering/OpenGL2/HitReadBack.h"
 
 #include "Rendering/OpenGL2/OffscreenState.h"
+#include "Rendering/OpenGL2/PixelStore.h"
 
 #include <algorithm>
 
@@ -57,6 +58,7 @@ bool HitReadBack::readBarycentrics(vtkOpenGLRenderWindow* window,
   std::vector<glm::uvec4> texels(bounds.pixels());
   {
     OffscreenState state(window, hits.framebuffer(), width, height);
+    const ScopedPixelStore store(ScopedPixelStore::Direction::ToHost);
     glReadPixels(bounds.x0, bounds.y0, bounds.width(), bounds.height(), GL_RGBA_INTEGER,
       GL_UNSIGNED_INT, texels.data());
   }

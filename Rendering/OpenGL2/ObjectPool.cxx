@@ -1,6 +1,8 @@
 // See ObjectPool.h.
 #include "Rendering/OpenGL2/ObjectPool.h"
 
+#include "Rendering/OpenGL2/PixelStore.h"
+
 #include "vtkOpenGLRenderWindow.h"
 
 #include <stdexcept>
@@ -165,6 +167,7 @@ bool Image2D::allocate(int width, int height, GLenum internalFormat, GLenum form
     glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
     glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
     glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAX_LEVEL, 0);
+    const ScopedPixelStore store(ScopedPixelStore::Direction::FromHost);
     glTexImage2D(GL_TEXTURE_2D, 0, static_cast<GLint>(internalFormat), width, height, 0, format,
       type, nullptr);
   }
@@ -178,20 +181,10 @@ bool Image2D::allocate(int width, int height, GLenum internalFormat, GLenum form
 void Image2D::upload(const void* pixels, const PixelBounds& bounds)
 {
   const ScopedTexture bound(GL_TEXTURE_2D, this->Texture);
-  const GLenum names[3] = { GL_UNPACK_ROW_LENGTH, GL_UNPACK_SKIP_PIXELS, GL_UNPACK_SKIP_ROWS };
-  const GLint values[3] = { this->Width, bounds.x0, bounds.y0 };
-  GLint before[3];
-  for (int i = 0; i < 3; ++i)
-  {
-    glGetIntegerv(names[i], &before[i]);
-    glPixelStorei(names[i], values[i]);
-  }
+  const ScopedPixelStore store(
+    ScopedPixelStore::Direction::FromHost, { this->Width, bounds.x0, bounds.y0 });
   glTexSubImage2D(GL_TEXTURE_2D, 0, bounds.x0, bounds.y0, bounds.width(), bounds.height(),
     this->Format, this->Type, pixels);
-  for (int i = 0; i < 3; ++i)
-  {
-    glPixelStorei(names[i], before[i]);
-  }
 }
 
 //------------------------------------------------------------------------------

@@ -1,6 +1,8 @@
 // See PixelReadBack.h.
 #include "Rendering/OpenGL2/PixelReadBack.h"
 
+#include "Rendering/OpenGL2/PixelStore.h"
+
 #include <algorithm>
 
 namespace hrt
@@ -92,6 +94,7 @@ void PixelReadBack::cut(const Piece& whole, int rows, std::vector<Piece>& pieces
 bool PixelReadBack::read(
   const std::vector<Piece>& pieces, const Format& format, const Receive& receive)
 {
+  const ScopedPixelStore store(ScopedPixelStore::Direction::ToHost);
   Transfer transfers[2];
   for (std::size_t i = 0; i < pieces.size() + 1; ++i)
   {

@@ -2,6 +2,7 @@
 #include "Rendering/OpenGL2/RayCaster.h"
 
 #include "Rendering/OpenGL2/OffscreenState.h"
+#include "Rendering/OpenGL2/PixelStore.h"
 #include "Rendering/OpenGL2/Shader.h"
 
 #include "vtkOpenGLRenderWindow.h"
@@ -136,6 +137,7 @@ bool RayCaster::shade(vtkOpenGLRenderWindow* window, const Inputs& inputs, const
   if (readBack)
   {
     glReadBuffer(GL_COLOR_ATTACHMENT0);
+    const ScopedPixelStore store(ScopedPixelStore::Direction::ToHost);
     glReadPixels(inputs.bounds.x0, inputs.bounds.y0, inputs.bounds.width(),
       inputs.bounds.height(), GL_RED, GL_FLOAT, readBack->data());
   }
