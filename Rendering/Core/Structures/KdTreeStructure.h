@@ -47,6 +47,8 @@ public:
   // are kept for the next one.
   StructureReport update(const Snapshot& snapshot) override;
 
+  using Structure::intersect; // the streams, which the overloads here would hide
+  using Structure::occluded;
   Hit intersect(const Ray& ray) const override;
   bool occluded(const Ray& ray) const override;
 
