@@ -3,7 +3,7 @@
 // one frame late.
 #pragma once
 
-#include "Rendering/Core/Plan/FramePlan.h"
+#include "Rendering/Core/Plan/Facts.h"
 
 class vtkHybridScene;
 class vtkOpenGLRenderWindow;

@@ -9,7 +9,7 @@
 #include "Rendering/OpenGL2/ObjectPool.h"
 
 #include "Rendering/Core/PixelBounds.h"
-#include "Rendering/Core/Plan/FramePlan.h"
+#include "Rendering/Core/Plan/Settings.h"
 #include "Rendering/Core/Snapshot.h"
 #include "Rendering/Core/Tracing/Tracer.h"
 

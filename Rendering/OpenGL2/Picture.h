@@ -6,7 +6,7 @@
 #include "Rendering/OpenGL2/ObjectIntersectionBuffer.h"
 #include "Rendering/OpenGL2/ObjectPool.h"
 
-#include "Rendering/Core/Plan/FramePlan.h"
+#include "Rendering/Core/Plan/Settings.h"
 
 namespace hrt
 {

@@ -11,7 +11,6 @@
 #include "Rendering/OpenGL2/PartTables.h"
 #include "Rendering/OpenGL2/PixelReadBack.h"
 
-#include "Rendering/Core/Plan/FramePlan.h"
 #include "Rendering/Core/Shading/ShadowLookup.h"
 #include "Rendering/Core/Snapshot.h"
 

@@ -1,7 +1,8 @@
 // Pixel bounds: how they are clamped, and that a part left out of a tile shows in none of its pixels.
 #include "Rendering/Core/PixelBounds.h"
-#include "Rendering/Core/Plan/FramePlan.h"
+#include "Rendering/Core/Plan/Facts.h"
 #include "Rendering/Core/Plan/PixelFrustum.h"
+#include "Rendering/Core/Plan/Settings.h"
 #include "Scenes.h"
 
 #include <gtest/gtest.h>
