@@ -3,9 +3,6 @@
 
 #include "Rendering/OpenGL2/Animation.h"
 
-#include "Rendering/Core/Structures/EmbreeStructure.h"
-#include "Rendering/Core/Structures/KdTreeStructure.h"
-
 #include "vtkOpenGLRenderWindow.h"
 
 #include <algorithm>
@@ -46,27 +43,32 @@ std::vector<Stage> orderOf(const FramePlan& plan, const Settings& settings)
   return order;
 }
 
-std::unique_ptr<Structure> makeStructure(Accelerator accelerator)
+// Does a piece of work; what it threw becomes the end of a sentence, for no exception may cross
+// VTK.
+template <class Work>
+std::string attempt(const char* failure, const Work& work)
 {
-  if (accelerator == Accelerator::KdTree)
+  try
   {
-    return std::make_unique<KdTreeStructure>();
+    work();
   }
-  return std::make_unique<EmbreeStructure>();
+  catch (const std::exception& exception)
+  {
+    return std::string(failure) + ": " + exception.what();
+  }
+  return {};
 }
 
-} // namespace
+const char* const kNotTraced = "the rays could not be traced";
 
+} // namespace
 
 //------------------------------------------------------------------------------
 FrameRenderer::FrameRenderer(vtkOpenGLRenderWindow* window)
   : Pool(window)
   , Convention(DepthConvention::ofCurrentContext())
   , Hardware(isHardwareContext())
-  , Geometry(Pool)
-  , Tables(Pool)
-  , Shadows(Pool, Convention)
-  , Caster(Pool)
+  , OnGPU(Pool, Convention)
   , ReadBack(Pool)
   , ToWindow(Pool)
   , Pictures{ { { Pool, Convention }, { Pool, Convention } } }
@@ -77,28 +79,13 @@ FrameRenderer::FrameRenderer(vtkOpenGLRenderWindow* window)
 Caches FrameRenderer::currentCaches(
   const Snapshot& snapshot, const Facts& facts, const Settings& settings)
 {
-  const int width = snapshot.camera.width;
-  const int height = snapshot.camera.height;
   Caches caches = this->Valid;
-  caches.geometryUploaded = this->Geometry.holds(snapshot);
-  if (this->picture().resize(width, height, settings.visibility))
+  if (this->picture().resize(snapshot.camera.width, snapshot.camera.height, settings.visibility))
   {
     caches.visibility = caches.primaryImage = caches.secondaryImage = false;
     caches.previousPicture = caches.tracing = false;
   }
-  std::vector<bool> wanted = facts.lightCanCast;
-  for (std::size_t i = 0; i < wanted.size(); ++i)
-  {
-    wanted[i] = wanted[i] && settings.usesShadowMaps() && facts.anyCaster;
-  }
-  const std::vector<bool> present =
-    this->Shadows.prepare(snapshot, wanted, settings.shadowMapResolution);
-  this->Statistics.shadowMapResolution = this->Shadows.resolution();
-  caches.shadowMaps.resize(present.size(), false);
-  for (std::size_t i = 0; i < present.size(); ++i)
-  {
-    caches.shadowMaps[i] = caches.shadowMaps[i] && present[i];
-  }
+  this->OnGPU.prepare(snapshot, facts, settings, this->Statistics, caches);
   return caches;
 }
 
@@ -117,7 +104,7 @@ std::string FrameRenderer::render(const std::shared_ptr<const Snapshot>& snapsho
   plan = planFrame(facts, settings, settingsChanges, changes, caches);
   if (!plan.keepsTracing)
   {
-    this->Tracer.reset();
+    this->Background.abandon();
   }
   const std::size_t shown = this->Current;
   if (plan.pipelined.run)
@@ -142,7 +129,7 @@ std::string FrameRenderer::render(const std::shared_ptr<const Snapshot>& snapsho
   }
   if (!plan.pipelined.run || !error.empty())
   {
-    this->Tracer.reset();
+    this->Background.abandon();
   }
   this->LastSettings = settings;
   this->Valid =
@@ -158,9 +145,9 @@ std::string FrameRenderer::runStage(Stage stage, const Settings& settings)
   switch (stage)
   {
     case Stage::GeometryUpload:
-      return this->uploadGeometry(snapshot);
+      return this->OnGPU.uploadGeometry(snapshot, this->Statistics);
     case Stage::ShadowMaps:
-      return this->drawShadowMaps(snapshot);
+      return this->OnGPU.drawShadowMaps(snapshot, this->Statistics);
     case Stage::Visibility:
       return settings.visibility == Visibility::RayCasting
         ? this->castPrimary(snapshot, settings)
@@ -168,15 +155,14 @@ std::string FrameRenderer::runStage(Stage stage, const Settings& settings)
     case Stage::Structure:
       return this->updateStructure(snapshot, settings);
     case Stage::ShadowReadBack:
-      return this->Shadows.readBack(this->Pool.window(), this->Statistics.bytesReadBack)
-        ? std::string()
-        : "the shadow maps could not be read back";
+      return this->OnGPU.readBackShadowMaps(this->Statistics);
     case Stage::ReadBack:
       return this->readBackAndTrace(settings);
     case Stage::PrimaryShading:
-      return !settings.shadesOnCPU() ? this->shadePrimary(snapshot, settings)
-        : pipelined                  ? std::string() // goes on when the frame is over
-                                     : this->trace(settings);
+      return !settings.shadesOnCPU()
+        ? this->OnGPU.shade(snapshot, settings.tracedBounds, this->picture())
+        : pipelined ? std::string() // goes on when the frame is over
+                    : this->trace(settings);
     case Stage::SecondaryRays:
       return pipelined ? std::string() : this->trace(settings);
     case Stage::Blit:
@@ -195,59 +181,16 @@ std::string FrameRenderer::show(std::size_t picture, const PixelBounds& bounds, 
 }
 
 //------------------------------------------------------------------------------
-std::string FrameRenderer::uploadGeometry(const Snapshot& snapshot)
-{
-  std::string error;
-  this->Geometry.update(snapshot, error);
-  this->Statistics.bytesUploaded += this->Geometry.uploadedBytes();
-  return error;
-}
-
-//------------------------------------------------------------------------------
-std::string FrameRenderer::drawShadowMaps(const Snapshot& snapshot)
-{
-  std::vector<bool> draw;
-  for (const StageDecision& decision : this->Statistics.plan.shadowMaps)
-  {
-    draw.push_back(decision.run);
-  }
-  if (!this->Shadows.draw(this->Pool.window(), snapshot, this->Geometry, draw))
-  {
-    return "the shadow maps could not be drawn";
-  }
-  this->Statistics.trianglesDrawn += this->Shadows.trianglesDrawn();
-  return {};
-}
-
-//------------------------------------------------------------------------------
 std::string FrameRenderer::drawVisibility(const Snapshot& snapshot, const Settings& settings)
 {
   ObjectIntersectionBuffer& hits = this->picture().hits;
-  if (!hits.draw(this->Pool.window(), snapshot, this->Geometry, this->Statistics.plan.rasterised,
-        settings.tracedBounds))
+  if (!hits.draw(this->Pool.window(), snapshot, this->OnGPU.geometry(),
+        this->Statistics.plan.rasterised, settings.tracedBounds))
   {
     return "the object intersection buffer could not be drawn";
   }
   this->Statistics.trianglesDrawn += hits.trianglesDrawn();
   return {};
-}
-
-//------------------------------------------------------------------------------
-RayCaster::Inputs FrameRenderer::inputs(const Snapshot& snapshot, const Settings& settings)
-{
-  return { snapshot, this->Geometry, this->Tables, this->Shadows, this->picture().hits,
-    settings.tracedBounds };
-}
-
-//------------------------------------------------------------------------------
-std::string FrameRenderer::shadePrimary(const Snapshot& snapshot, const Settings& settings)
-{
-  this->Shadows.updateTable(snapshot);
-  this->Tables.update(snapshot, this->Shadows.slots());
-  return this->Caster.draw(
-           this->Pool.window(), this->inputs(snapshot, settings), this->picture().primary)
-    ? std::string()
-    : "the ray caster could not be drawn";
 }
 
 //------------------------------------------------------------------------------
@@ -258,21 +201,8 @@ std::string FrameRenderer::updateStructure(const Snapshot& snapshot, const Setti
   {
     return error;
   }
-  try
-  {
-    if (!this->Rays || this->RaysKind != settings.accelerator)
-    {
-      this->Rays = makeStructure(settings.accelerator);
-      this->RaysKind = settings.accelerator;
-    }
-    this->Statistics.structure = this->Rays->update(snapshot);
-  }
-  catch (const std::exception& exception)
-  {
-    this->Rays.reset();
-    return std::string("the ray structure could not be built: ") + exception.what();
-  }
-  return {};
+  return attempt("the ray structure could not be built",
+    [&] { this->Statistics.structure = this->Rays.update(snapshot, settings.accelerator); });
 }
 
 //------------------------------------------------------------------------------
@@ -293,7 +223,7 @@ TracerSettings FrameRenderer::tracerSettings(const Settings& settings) const
   tracing.shadows = settings.shadows != ShadowMode::Off;
   if (settings.shadesOnCPU() && settings.usesShadowMaps())
   {
-    tracing.shadowMaps = this->Shadows.hostTables(*this->Scene);
+    tracing.shadowMaps = this->OnGPU.shadowMaps().hostTables(*this->Scene);
   }
   // Shadow maps know nothing of translucent casters; a mirror must not show what is not there.
   tracing.tintedShadows = settings.usesShadowRays();
@@ -309,14 +239,13 @@ TracerSettings FrameRenderer::tracerSettings(const Settings& settings) const
 //------------------------------------------------------------------------------
 std::string FrameRenderer::castPrimary(const Snapshot& snapshot, const Settings& settings)
 {
-  try
-  {
+  const std::string error = attempt("the primary rays could not be traced", [&] {
     this->Statistics.rays +=
-      castPrimaryRays(snapshot, *this->Rays, tracerSettings(settings), this->Host);
-  }
-  catch (const std::exception& exception)
+      castPrimaryRays(snapshot, *this->Rays.get(), this->tracerSettings(settings), this->Host);
+  });
+  if (!error.empty())
   {
-    return std::string("the primary rays could not be traced: ") + exception.what();
+    return error;
   }
   this->picture().hits.upload(this->Host, settings.tracedBounds);
   this->Statistics.bytesUploaded +=
@@ -327,93 +256,70 @@ std::string FrameRenderer::castPrimary(const Snapshot& snapshot, const Settings&
 //------------------------------------------------------------------------------
 void FrameRenderer::beginTracing(const Settings& settings)
 {
-  if (!this->Rays) // neither shadows nor mirrors: an empty structure will not be asked
-  {
-    this->Rays = makeStructure(settings.accelerator);
-    this->RaysKind = settings.accelerator;
-  }
-  this->TracedScene = this->Scene;
-  this->TracedPicture = this->Current;
-  this->TracesEverything = settings.shadesOnCPU();
-  this->Tracing = this->tracerSettings(settings);
-  const Camera& camera = this->TracedScene->camera;
+  const Camera& camera = this->Scene->camera;
   // The ids are written in place when tracing has begun.
   this->Host.ids.resize(static_cast<std::size_t>(camera.width) * camera.height);
-  this->Tracer = std::make_unique<ImageTracer>(*this->TracedScene, *this->Rays, this->Tracing,
-    this->TracesEverything ? Wanted::Everything : Wanted::SecondaryOnly, this->Host.ids.data(),
-    this->Traced);
+  // Where neither shadows nor mirrors are, an empty structure will not be asked.
+  this->Background.begin(this->Scene, this->Rays.getOrEmpty(settings.accelerator),
+    this->tracerSettings(settings),
+    settings.shadesOnCPU() ? Wanted::Everything : Wanted::SecondaryOnly, this->Host.ids.data(),
+    this->picture());
 }
 
 //------------------------------------------------------------------------------
 std::string FrameRenderer::readBackAndTrace(const Settings& settings)
 {
-  const std::string error = this->finishFrameBefore(); // it reads the ids that are overwritten
+  std::string error = this->finishFrameBefore(); // it reads the ids that are overwritten
   if (!error.empty())
   {
     return error;
   }
-  try
-  {
+  bool arrived = false;
+  error = attempt(kNotTraced, [&] {
     this->beginTracing(settings);
-    return this->readIds(settings.tracedBounds, [this](int rows) { this->Tracer->idsReady(rows); })
-      ? std::string()
-      : "the object intersection buffer could not be read back";
-  }
-  catch (const std::exception& exception)
-  {
-    return std::string("the rays could not be traced: ") + exception.what();
-  }
+    arrived = this->readIds(
+      settings.tracedBounds, [this](int rows) { this->Background.idsReady(rows); });
+  });
+  return !error.empty() || arrived ? error
+                                   : "the object intersection buffer could not be read back";
 }
 
 //------------------------------------------------------------------------------
 std::string FrameRenderer::trace(const Settings& settings)
 {
-  try
-  {
-    if (!this->Tracer) // the ids were on the host already
+  const std::string error = attempt(kNotTraced, [&] {
+    if (!this->Background.underWay()) // the ids were on the host already
     {
       this->beginTracing(settings);
     }
-  }
-  catch (const std::exception& exception)
-  {
-    return std::string("the rays could not be traced: ") + exception.what();
-  }
-  return this->finishTracing();
+  });
+  return error.empty() ? this->finishTracing() : error;
 }
 
 //------------------------------------------------------------------------------
 std::string FrameRenderer::finishTracing()
 {
-  try
-  {
-    const SecondaryResult result = this->Tracer->finish();
-    this->Tracer.reset();
+  const std::string error = attempt(kNotTraced, [this] {
+    const SecondaryResult result = this->Background.finish();
     this->Statistics.rays += result.rays;
     this->Statistics.multisampling = result.multisampling;
     this->Statistics.interleave = result.interleave;
     this->Statistics.secondaryPixels = result.pixels;
     this->Statistics.invalidIds = result.invalidIds;
-  }
-  catch (const std::exception& exception)
+  });
+  if (error.empty())
   {
-    this->Tracer.reset();
-    return std::string("the rays could not be traced: ") + exception.what();
+    this->Statistics.bytesUploaded += this->Background.upload();
   }
-  Picture& picture = this->Pictures[this->TracedPicture];
-  Image2D& target = this->TracesEverything ? picture.primary : picture.secondary;
-  target.allocate(this->Traced.width, this->Traced.height, GL_RGBA32F, GL_RGBA, GL_FLOAT);
-  const PixelBounds& bounds = this->Tracing.bounds;
-  target.upload(this->Traced.pixels.data(), bounds);
-  this->Statistics.bytesUploaded += bounds.pixels() * sizeof(this->Traced.pixels[0]);
-  return {};
+  return error;
 }
 
 //------------------------------------------------------------------------------
 std::string FrameRenderer::finishFrameBefore()
 {
-  return this->Tracer && this->TracedPicture != this->Current ? this->finishTracing()
-                                                             : std::string();
+  return this->Background.underWay() && !this->Background.fills(this->picture())
+    ? this->finishTracing()
+    : std::string();
 }
 
 //------------------------------------------------------------------------------
@@ -450,9 +356,9 @@ bool FrameRenderer::readShadow(int light, std::vector<float>& share)
   {
     return this->castShadows(light, share);
   }
-  const bool done = this->Caster.readShadow(
-    this->Pool.window(), this->inputs(*this->Scene, this->LastSettings), light, share);
-  this->Statistics.bytesReadBack += this->LastSettings.tracedBounds.pixels() * sizeof(float);
+  const PixelBounds& bounds = this->LastSettings.tracedBounds;
+  const bool done = this->OnGPU.readShadow(*this->Scene, bounds, this->picture(), light, share);
+  this->Statistics.bytesReadBack += bounds.pixels() * sizeof(float);
   return done;
 }
 
@@ -461,7 +367,7 @@ bool FrameRenderer::castShadows(int light, std::vector<float>& share)
 {
   const TracerSettings settings = this->tracerSettings(this->LastSettings);
   const std::vector<std::uint32_t>& ids = this->ids();
-  if (ids.empty() || !this->Rays)
+  if (ids.empty() || !this->Rays.get())
   {
     return false;
   }
@@ -474,16 +380,10 @@ bool FrameRenderer::castShadows(int light, std::vector<float>& share)
     }
     return true;
   }
-  try
-  {
+  return attempt(kNotTraced, [&] {
     share = castShadowRays(
-      *this->Scene, *this->Rays, settings, ids.data(), static_cast<std::size_t>(light));
-  }
-  catch (const std::exception&)
-  {
-    return false;
-  }
-  return true;
+      *this->Scene, *this->Rays.get(), settings, ids.data(), static_cast<std::size_t>(light));
+  }).empty();
 }
 
 } // namespace gl

@@ -1,26 +1,23 @@
-// Carries out a frame plan: owns the GL side of the pass and the ray structure, runs the stages that
-// the plan asks for, in order, and keeps count of what was done. It decides nothing itself.
+// Carries out a frame plan: owns the GL side of the pass and the ray structure, runs the stages
+// that the plan asks for, in order, and keeps count of what was done. It decides nothing itself.
 //
-// A pipelined frame (paper, section 3.3) is drawn into the picture that is not shown, while the rays of
-// the frame before are traced in the background; then that one is finished and shown, and the new
-// frame's rays are started. They go on when render() has returned. Background tasks touch neither GL
-// nor VTK: they read an immutable snapshot and the ids, and write an image in host memory.
+// A pipelined frame (paper, section 3.3) is drawn into the picture that is not shown, while the
+// rays of the frame before are traced in the background; then that one is finished and shown, and
+// the new frame's rays are started. They go on when render() has returned (BackgroundTracing.h).
 #pragma once
 
+#include "Rendering/OpenGL2/BackgroundTracing.h"
 #include "Rendering/OpenGL2/Blit.h"
 #include "Rendering/OpenGL2/DepthConvention.h"
-#include "Rendering/OpenGL2/GeometryBuffers.h"
+#include "Rendering/OpenGL2/FrameStatistics.h"
+#include "Rendering/OpenGL2/GPUScene.h"
 #include "Rendering/OpenGL2/HitReadBack.h"
 #include "Rendering/OpenGL2/ObjectPool.h"
-#include "Rendering/OpenGL2/PartTables.h"
 #include "Rendering/OpenGL2/Picture.h"
-#include "Rendering/OpenGL2/RayCaster.h"
-#include "Rendering/OpenGL2/ShadowMaps.h"
+#include "Rendering/OpenGL2/RayStructure.h"
 
 #include "Rendering/Core/Plan/FramePlan.h"
 #include "Rendering/Core/Snapshot.h"
-#include "Rendering/Core/Structures/Structure.h"
-#include "Rendering/Core/Tracing/ImageTracer.h"
 #include "Rendering/Core/Tracing/Tracer.h"
 
 #include <array>
@@ -37,31 +34,14 @@ namespace hrt
 namespace gl
 {
 
-// What one frame did.
-struct FrameStatistics
-{
-  FramePlan plan;
-  std::array<double, kStageCount> milliseconds{}; // of the host, 0 for stages that did not run
-  RayCounters rays;
-  MultisamplingCounts multisampling;
-  InterleaveCounts interleave;
-  StructureReport structure;
-  int shadowMapResolution = 0; // texels along a side, as memory allowed
-  std::uint64_t secondaryPixels = 0;
-  std::uint64_t invalidIds = 0;
-  std::uint64_t trianglesDrawn = 0; // rasterised, shadow maps included
-  std::uint64_t bytesReadBack = 0;
-  std::uint64_t bytesUploaded = 0;
-};
-
 class FrameRenderer
 {
 public:
   // The window's context must be current.
   explicit FrameRenderer(vtkOpenGLRenderWindow* window);
 
-  // Renders a frame into the bound framebuffer at (x, y). The settings' bounds have been set for the
-  // camera's viewport. Empty when done, else what went wrong.
+  // Renders a frame into the bound framebuffer at (x, y). The settings' bounds have been set for
+  // the camera's viewport. Empty when done, else what went wrong.
   std::string render(const std::shared_ptr<const Snapshot>& snapshot, const Changes& changes,
     const Settings& settings, const Circumstances& circumstances, int x, int y);
 
@@ -73,7 +53,8 @@ public:
   // For the user's buffers, after render().
   // The pixels that the last frame shows. What the others hold below is left undefined.
   const PixelBounds& bounds() const { return this->LastSettings.bounds; }
-  // Triangle numbers plus one of the last frame, row 0 at the bottom. Empty when they cannot be had.
+  // Triangle numbers plus one of the last frame, row 0 at the bottom. Empty when they cannot be
+  // had.
   const std::vector<std::uint32_t>& ids();
   bool readBarycentrics(std::vector<glm::dvec2>& barycentrics); // direct rendering only
   bool readShadow(int light, std::vector<float>& share);
@@ -82,10 +63,7 @@ private:
   Caches currentCaches(
     const Snapshot& snapshot, const Facts& facts, const Settings& settings);
   std::string runStage(Stage stage, const Settings& settings);
-  std::string uploadGeometry(const Snapshot& snapshot);
-  std::string drawShadowMaps(const Snapshot& snapshot);
   std::string drawVisibility(const Snapshot& snapshot, const Settings& settings);
-  std::string shadePrimary(const Snapshot& snapshot, const Settings& settings);
   std::string updateStructure(const Snapshot& snapshot, const Settings& settings);
   std::string castPrimary(const Snapshot& snapshot, const Settings& settings);
   std::string readBackAndTrace(const Settings& settings);
@@ -98,31 +76,19 @@ private:
   bool castShadows(int light, std::vector<float>& share);
   bool readIds(const PixelBounds& bounds, const std::function<void(int)>& rowsReady);
   TracerSettings tracerSettings(const Settings& settings) const;
-  RayCaster::Inputs inputs(const Snapshot& snapshot, const Settings& settings);
 
   // Destroyed last: all others hold names that it owns.
   ObjectPool Pool;
   DepthConvention Convention;
   bool Hardware;
-  GeometryBuffers Geometry;
-  PartTables Tables;
-  ShadowMaps Shadows;
-  RayCaster Caster;
+  GPUScene OnGPU;
   HitReadBack ReadBack;
   Blit ToWindow;
   std::array<Picture, 2> Pictures;
   std::size_t Current = 0; // the picture of the last frame that was drawn
-  std::unique_ptr<Structure> Rays;
-  Accelerator RaysKind = Accelerator::Embree;
+  RayStructure Rays;
   PrimaryHits Host; // ids in host memory, by rays or read back
-
-  // What is being traced, and for which picture; in this order, so that the tracer goes first.
-  std::shared_ptr<const Snapshot> TracedScene;
-  TracerSettings Tracing;
-  SecondaryImage Traced;
-  std::size_t TracedPicture = 0;
-  bool TracesEverything = false;
-  std::unique_ptr<ImageTracer> Tracer;
+  BackgroundTracing Background; // destroyed before the structure and the ids, which it reads
 
   std::shared_ptr<const Snapshot> Scene; // of the last frame
   Settings LastSettings;

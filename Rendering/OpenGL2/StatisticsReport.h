@@ -2,7 +2,7 @@
 // the frame plan.
 #pragma once
 
-#include "Rendering/OpenGL2/FrameRenderer.h"
+#include "Rendering/OpenGL2/FrameStatistics.h"
 
 #include "Rendering/Core/Snapshot.h"
 
