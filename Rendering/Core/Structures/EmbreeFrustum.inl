@@ -51,7 +51,7 @@ struct Frustum
       return false;
     }
     this->slack = static_cast<float>(4.0 * box.padding());
-    this->begin = smallest(nearest);
+    this->begin = leastLane(nearest);
     const double last = this->forward > 0.0f ? box.upper[axes.z] : -box.lower[axes.z];
     const float depth = std::max(static_cast<float>(last) - this->begin, 0.0f);
     this->fit(entry, axes.x, 0, depth);
@@ -81,7 +81,7 @@ struct Frustum
         least(start + loadRays(entry.end.of + first), allRays(std::numeric_limits<float>::max()));
       last = most(last, end - loadRays(this->apart.of + first));
     }
-    return largest(last) + this->slack;
+    return mostLane(last) + this->slack;
   }
 
   struct Met
@@ -150,8 +150,8 @@ private:
       upper[0] = most(upper[0], at0 - out);
       upper[1] = most(upper[1], at1 - out);
     }
-    const float l0 = smallest(lower[0]), l1 = smallest(lower[1]);
-    const float u0 = largest(upper[0]), u1 = largest(upper[1]);
+    const float l0 = leastLane(lower[0]), l1 = leastLane(lower[1]);
+    const float u0 = mostLane(upper[0]), u1 = mostLane(upper[1]);
     this->width = std::max(this->width, std::max(u0 - l0, u1 - l1));
     this->line(0, which, l0 - this->slack, l1 - this->slack, depth);
     this->line(1, which, u0 + this->slack, u1 + this->slack, depth);

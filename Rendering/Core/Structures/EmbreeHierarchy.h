@@ -36,6 +36,7 @@ public:
 
   const WideTree& tree() const { return this->Tree; }
   const TriangleBlock& block(std::uint32_t i) const { return this->Blocks[i]; }
+  std::uint32_t blockCount() const { return static_cast<std::uint32_t>(this->Blocks.size()); }
   const SieveSlack& slack() const { return this->Slack; }
   const TraversalBox& box() const { return this->Box; }
   const EntryBox& entry() const { return this->Entry; }

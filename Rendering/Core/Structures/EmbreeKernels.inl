@@ -16,19 +16,24 @@ static_assert(WideNode::kWidth == kLanes, "a value's lanes are a node's children
 
 // --- Boxes --------------------------------------------------------------------------------------
 
-// A ray as the nodes of a tree want it.
+// A ray as the nodes of a tree want it. `kFar`: it has a margin.
+template <bool kFar>
 struct NodeRay
 {
-  Floats inverse[3], offset[3]; // offset: the origin times the inverse
-  int nearer[3];                // which of a box' bounds the ray meets first
+  Floats inverse[3];
+  Floats offset[kFar ? 2 : 1][3]; // the origin times the inverse; for what is met first, and last
+  int nearer[3];                  // which of a box' bounds the ray meets first
 
   HRT_LANES explicit NodeRay(const TraversalRay& ray)
   {
     for (int axis = 0; axis < 3; ++axis)
     {
-      this->inverse[axis] = all(ray.inverse[axis]);
-      this->offset[axis] = all(ray.origin[axis] * ray.inverse[axis]);
-      this->nearer[axis] = std::signbit(ray.inverse[axis]) ? 1 : 0;
+      const float inverse = ray.inverse[axis], offset = ray.origin[axis] * inverse;
+      this->inverse[axis] = all(inverse);
+      this->nearer[axis] = std::signbit(inverse) ? 1 : 0;
+      const float margin = kFar ? static_cast<float>(ray.margin) * std::fabs(inverse) : 0.0f;
+      this->offset[0][axis] = all(offset + margin);
+      this->offset[kFar ? 1 : 0][axis] = all(offset - margin);
     }
   }
 
@@ -47,7 +52,9 @@ struct NodeRay
 private:
   HRT_LANES Floats plane(const WideNode& node, int axis, int which) const
   {
-    return mulSub(load(node.bound[which][axis]), this->inverse[axis], this->offset[axis]);
+    const bool last = kFar && which != this->nearer[axis];
+    return mulSub(
+      load(node.bound[which][axis]), this->inverse[axis], this->offset[last ? 1 : 0][axis]);
   }
 };
 
@@ -262,14 +269,17 @@ struct Triangles
   const Member* const members;
   Search& search;
   const TraversalRay& ray;
+  const SieveSlack& slack;
   const Axes axes;
   const SieveRay<Floats> sieveRay;
 
-  HRT_LANES Triangles(const Hierarchy& h, const Member* m, Search& s, const TraversalRay& r)
+  HRT_LANES Triangles(const Hierarchy& h, const Member* m, Search& s, const TraversalRay& r,
+    const SieveSlack& sieveSlack)
     : hierarchy(h)
     , members(m)
     , search(s)
     , ray(r)
+    , slack(sieveSlack)
     , axes(r.direction)
     , sieveRay{ all(r.origin[axes.x]), all(r.origin[axes.y]),
       all(r.origin[axes.z] * r.direction[axes.z]), all(r.direction[axes.x]),
@@ -288,20 +298,19 @@ struct Triangles
   HRT_LANES float operator()(std::uint32_t number, float end)
   {
     const TriangleBlock& block = this->hierarchy.block(number);
-    const SieveSlack& slack = this->hierarchy.slack();
     const Sieved<Floats> sieved(this->corner(block, 0), this->corner(block, 1),
-      this->corner(block, 2), this->sieveRay, slack,
+      this->corner(block, 2), this->sieveRay, this->slack,
       [](Floats ax, Floats ay, Floats bx, Floats by, Floats cx, Floats cy) HRT_TARGET
       { return most(size(ax) + size(ay), most(size(bx) + size(by), size(cx) + size(cy))); });
-    const SieveEnd<Floats> sieveEnd(all(end), slack);
-    const unsigned int possible = sieved.possible(sieveEnd, slack);
+    const SieveEnd<Floats> sieveEnd(all(end), this->slack);
+    const unsigned int possible = sieved.possible(sieveEnd, this->slack);
     if (possible == 0)
     {
       return end;
     }
     if (kAny)
     {
-      const SieveResult lanes = { possible, sieved.sure(sieveEnd, slack) };
+      const SieveResult lanes = { possible, sieved.sure(sieveEnd, this->slack) };
       this->search.found = this->hierarchy.any(number, lanes, this->members, this->search);
       return this->search.found ? -1.0f : end;
     }
@@ -315,22 +324,81 @@ template <bool kAny>
 HRT_LANES void searchEntered(
   const TopLevel& scene, const Placed& part, const TraversalRay& ray, Search& search)
 {
-  const float end = ray.end(search.end());
-  Triangles<kAny> triangles(*part.hierarchy, scene.membersOf(part), search, ray);
-  traverse<!kAny>(part.hierarchy->tree(), NodeRay(ray), end, triangles);
+  const Hierarchy& hierarchy = *part.hierarchy;
+  Triangles<kAny> triangles(hierarchy, scene.membersOf(part), search, ray, hierarchy.slack());
+  traverse<!kAny>(hierarchy.tree(), NodeRay<false>(ray), ray.end(search.end()), triangles);
 }
 
+// The exact kernel asked about every triangle of a part.
+template <bool kAny>
+HRT_TARGET void askAll(const TopLevel& scene, const Placed& part, Search& search)
+{
+  const Hierarchy& hierarchy = *part.hierarchy;
+  constexpr unsigned int lanes = (1u << kLanes) - 1u;
+  for (std::uint32_t i = 0; i < hierarchy.blockCount() && !search.found; ++i)
+  {
+    if (kAny)
+    {
+      search.found = hierarchy.any(i, { lanes, 0 }, scene.membersOf(part), search);
+    }
+    else
+    {
+      hierarchy.nearest(i, lanes, scene.membersOf(part), search);
+    }
+  }
+}
+
+// With a margin of so many reaches a tree leaves nothing out.
+constexpr double kWidestMargin = 4.0;
+
+// A ray from so far away, or a part placed so far off, that double precision cannot tell to within
+// a float's rounding where the one meets the other.
+template <bool kAny>
+HRT_TARGET __attribute__((noinline)) void searchFar(
+  const TopLevel& scene, const Placed& part, Search& search)
+{
+  const Hierarchy& hierarchy = *part.hierarchy;
+  // A quarter more is for the rounding of the margin itself, and of what it is added to.
+  const double margin = 1.25 * part.placement.slack(largest(search.ray->origin));
+  const double reach = hierarchy.box().reach();
+  if (!(margin <= kWidestMargin * reach))
+  {
+    askAll<kAny>(scene, part, search);
+    return;
+  }
+  TraversalRay ray;
+  if (part.enter(search, EntryBox(hierarchy.box(), margin), margin, ray))
+  {
+    // The sieve takes its bounds for floats' roundings from a reach: this one's is the margin.
+    const SieveSlack slack(reach + 0x1p24 * margin);
+    Triangles<kAny> triangles(hierarchy, scene.membersOf(part), search, ray, slack);
+    traverse<!kAny>(hierarchy.tree(), NodeRay<true>(ray), ray.end(search.end()), triangles);
+  }
+}
+
+// For an ordinary ray.
 template <bool kAny>
 HRT_TARGET void searchPart(const TopLevel& scene, const Placed& part, Search& search)
 {
+  if (!(largest(search.ray->origin) <= part.near))
+  {
+    searchFar<kAny>(scene, part, search);
+    return;
+  }
   TraversalRay ray;
-  if (part.enter(search, ray))
+  if (part.enter(search, part.hierarchy->entry(), 0.0, ray))
   {
     searchEntered<kAny>(scene, part, ray, search);
   }
 }
 
 // --- Parts --------------------------------------------------------------------------------------
+
+template <bool kAny>
+HRT_LANES bool takesPart(const Placed& part)
+{
+  return kAny ? part.castsShadow : part.visibleToRays;
+}
 
 template <bool kAny>
 struct Parts
@@ -344,7 +412,7 @@ struct Parts
   HRT_LANES float operator()(std::uint32_t leaf, float end)
   {
     const Placed& part = this->scene.leaf(leaf);
-    if (!(kAny ? part.castsShadow : part.visibleToRays))
+    if (!takesPart<kAny>(part))
     {
       return end;
     }
@@ -353,11 +421,34 @@ struct Parts
   }
 };
 
+// Part by part: for what the upper tree cannot do.
+template <bool kAny, class SearchPart>
+HRT_TARGET __attribute__((noinline)) void searchEach(
+  const TopLevel& scene, Search& search, SearchPart searchOne)
+{
+  for (std::size_t i = 0; i < scene.size() && !search.found; ++i)
+  {
+    if (takesPart<kAny>(scene.part(i)))
+    {
+      searchOne(scene, scene.part(i), search);
+    }
+  }
+}
+
 template <bool kAny>
 HRT_TARGET void searchScene(const TopLevel& scene, Search& search)
 {
-  if (scene.size() == 0 || !search.usable())
+  const Ray& ray = *search.ray;
+  if (scene.size() == 0 || !ray.hasLength())
   {
+    return;
+  }
+  if (!isOrdinary(ray.direction) || !isFinite(ray.origin))
+  {
+    if (isUsable(ray.origin, ray.direction))
+    {
+      searchEach<kAny>(scene, search, &askAll<kAny>);
+    }
     return;
   }
   if (scene.size() == 1)
@@ -365,12 +456,16 @@ HRT_TARGET void searchScene(const TopLevel& scene, Search& search)
     searchPart<kAny>(scene, scene.part(0), search);
     return;
   }
+  if (!(largest(ray.origin) <= scene.near()))
+  {
+    searchEach<kAny>(scene, search, &searchFar<kAny>);
+    return;
+  }
   TraversalRay upper;
-  const Ray& ray = *search.ray;
-  if (enterBox(scene.entry(), ray.origin, ray.direction, search.end(), upper))
+  if (enterBox(scene.entry(), ray.origin, ray.direction, search.end(), 0.0, upper))
   {
     Parts<kAny> parts{ scene, search, upper };
-    traverse<!kAny>(scene.tree(), NodeRay(upper), upper.end(search.end()), parts);
+    traverse<!kAny>(scene.tree(), NodeRay<false>(upper), upper.end(search.end()), parts);
   }
 }
 

@@ -89,7 +89,7 @@ HRT_LANES Floats where(unsigned int bits, Floats a, Floats b)
   return { _mm256_blendv_ps(b.v, a.v, _mm256_castsi256_ps(chosen)) };
 }
 // The smallest lane.
-HRT_LANES float smallest(Floats a)
+HRT_LANES float leastLane(Floats a)
 {
   __m128 half = _mm_min_ps(_mm256_castps256_ps128(a.v), _mm256_extractf128_ps(a.v, 1));
   half = _mm_min_ps(half, _mm_movehl_ps(half, half));
@@ -207,7 +207,7 @@ HRT_LANES Floats where(unsigned int chosen, Floats a, Floats b)
     (every & (ones << 4)) != 0 ? a.v[1] : b.v[1] } };
 }
 // The smallest lane.
-HRT_LANES float smallest(Floats a)
+HRT_LANES float leastLane(Floats a)
 {
   const Quad four = least(a.v[0], a.v[1]);
   return std::min(std::min(four[0], four[1]), std::min(four[2], four[3]));
@@ -281,9 +281,9 @@ HRT_LANES RayFloats where(unsigned int bits, RayFloats a, RayFloats b)
 {
   return { _mm512_mask_blend_ps(static_cast<__mmask16>(bits), b.v, a.v) };
 }
-HRT_LANES float smallest(RayFloats a)
+HRT_LANES float leastLane(RayFloats a)
 {
-  return smallest(least(Floats{ _mm512_maskz_extractf32x8_ps(0xff, a.v, 0) },
+  return leastLane(least(Floats{ _mm512_maskz_extractf32x8_ps(0xff, a.v, 0) },
     Floats{ _mm512_maskz_extractf32x8_ps(0xff, a.v, 1) }));
 }
 
@@ -304,9 +304,9 @@ HRT_LANES RayFloats allRays(float a)
   return RayFloats::all(a);
 }
 
-HRT_LANES float largest(RayFloats a)
+HRT_LANES float mostLane(RayFloats a)
 {
-  return -smallest(allRays(0.0f) - a);
+  return -leastLane(allRays(0.0f) - a);
 }
 
 // The numbers of the bits, in order. Up to kPacket of them are written whatever their count.

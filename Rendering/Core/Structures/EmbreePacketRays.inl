@@ -46,50 +46,53 @@ struct PacketRays
   PerRay<double> origin[3], direction[3], end;
   unsigned int active = 0; // bits of those that take part; the others repeat one of them
 
-  // Bits of those that are by isUsable, which like this asks without arithmetic: the bits of
-  // numbers that are not negative are in the numbers' order.
-  HRT_LANES unsigned int usable() const
+  // Lets the others repeat one of those that take part.
+  HRT_LANES void repeatActive()
   {
-    PerRay<std::int64_t> usable;
-    for (unsigned int i = 0; i < kPacket; ++i)
+    const int first = lowest(this->active);
+    for (unsigned int rest = this->active ^ ((1u << kPacket) - 1u); rest != 0; rest &= rest - 1)
     {
-      const std::int64_t longest = largestSize(this->direction, i),
-                         farthest = largestSize(this->origin, i);
-      usable.of[i] = (longest < kInfinity) & (longest >= kSmallestNormal) & (farthest < kInfinity);
+      const int i = lowest(rest);
+      for (int axis = 0; axis < 3; ++axis)
+      {
+        this->origin[axis].of[i] = this->origin[axis].of[first];
+        this->direction[axis].of[i] = this->direction[axis].of[first];
+      }
+      this->end.of[i] = this->end.of[first];
     }
-    return bitsOf(usable);
-  }
-
-protected:
-  static constexpr std::int64_t kInfinity = 0x7ff0000000000000;
-  static constexpr std::int64_t kSmallestNormal = 0x0010000000000000;
-
-private:
-  HRT_LANES static std::int64_t bitsOfSize(double a)
-  {
-    std::int64_t bits;
-    std::memcpy(&bits, &a, sizeof(bits));
-    return bits & std::numeric_limits<std::int64_t>::max();
-  }
-  HRT_LANES static std::int64_t largestSize(const PerRay<double> (&v)[3], unsigned int i)
-  {
-    const std::int64_t x = bitsOfSize(v[0].of[i]), y = bitsOfSize(v[1].of[i]),
-                       z = bitsOfSize(v[2].of[i]);
-    const std::int64_t xy = x > y ? x : y;
-    return xy > z ? xy : z;
   }
 };
+
+// The bits of a number's size: without arithmetic, which raises exceptions, they are in the order
+// of the sizes, infinity and what is not a number after all others.
+HRT_LANES std::int64_t bitsOfSize(double a)
+{
+  std::int64_t bits;
+  std::memcpy(&bits, &a, sizeof(bits));
+  return bits & std::numeric_limits<std::int64_t>::max();
+}
+
+HRT_LANES std::int64_t largestSize(const PerRay<double> (&v)[3], unsigned int i)
+{
+  const std::int64_t x = bitsOfSize(v[0].of[i]), y = bitsOfSize(v[1].of[i]),
+                     z = bitsOfSize(v[2].of[i]);
+  const std::int64_t xy = x > y ? x : y;
+  return xy > z ? xy : z;
+}
 
 // The packet's rays as they are given, in the scene's coordinates.
 struct SceneRays : PacketRays
 {
   static constexpr int kNoAxis = 3;
-  PerRay<double> last;     // Ray::tMaximum
-  PerRay<TriangleId> from; // Ray::originTriangle
-  bool leave = false;      // some of them do leave from a triangle
-  int longest = kNoAxis;   // axis of all their directions, or kNoAxis where it is not one
+  PerRay<double> last;       // Ray::tMaximum
+  PerRay<TriangleId> from;   // Ray::originTriangle
+  PerRay<std::int64_t> away; // largestSize of the origin
+  std::int64_t farthest = 0; // the largest of those
+  unsigned int alone = 0;    // bits of those that must go singly, if they go at all
+  bool leave = false;        // some of them do leave from a triangle
+  int longest = kNoAxis;     // axis of all their directions, or kNoAxis where it is not one
 
-  // False when none of them can hit anything.
+  // False when none of them may go with others.
   HRT_LANES bool take(const Ray* rays, unsigned int count)
   {
     for (unsigned int first = 0; first < kPacket; first += kLanes)
@@ -97,7 +100,9 @@ struct SceneRays : PacketRays
       this->takeEight(rays, count, first);
     }
     this->end = this->last;
-    this->active = this->usable() & this->withLength() & ((1u << count) - 1u);
+    const unsigned int given = (1u << count) - 1u;
+    this->active = given & this->goTogether();
+    this->alone = given & ~this->active;
     if (this->active == 0)
     {
       return false;
@@ -106,6 +111,18 @@ struct SceneRays : PacketRays
     this->repeatActive();
     this->findLongest();
     return true;
+  }
+
+  // Bits of those that begin farther away than that.
+  HRT_LANES unsigned int beyond(double distance) const
+  {
+    const std::int64_t bound = distance > 0.0 ? bitsOfSize(distance) : -1;
+    unsigned int bits = 0;
+    for (unsigned int i = 0; i<kPacket&& this->farthest> bound; ++i)
+    {
+      bits |= this->away.of[i] > bound ? 1u << i : 0u;
+    }
+    return bits;
   }
 
   // Bits of those that leave from the triangle.
@@ -175,32 +192,29 @@ private:
 #endif
   }
 
-  // By Ray::hasLength.
-  HRT_LANES unsigned int withLength() const
+  // Bits of those that are usable and ordinary, and have a length.
+  HRT_LANES unsigned int goTogether()
   {
-    PerRay<std::int64_t> longer;
+    const std::int64_t infinity = bitsOfSize(std::numeric_limits<double>::infinity());
+    const std::int64_t shortest = bitsOfSize(kShortest), most = bitsOfSize(kLongest);
+    PerRay<std::int64_t> together;
     for (unsigned int i = 0; i < kPacket; ++i)
     {
-      std::int64_t end;
+      const std::int64_t length = largestSize(this->direction, i);
+      const std::int64_t distance = largestSize(this->origin, i);
+      std::int64_t end; // with its sign
       std::memcpy(&end, &this->last.of[i], sizeof(end));
-      longer.of[i] = (end > 0) & (end <= kInfinity);
+      together.of[i] = (length >= shortest) & (length <= most) & (distance < infinity) & (end > 0) &
+        (end <= infinity);
+      this->away.of[i] = distance;
     }
-    return bitsOf(longer);
-  }
-
-  HRT_LANES void repeatActive()
-  {
-    const int first = lowest(this->active);
-    for (unsigned int rest = this->active ^ ((1u << kPacket) - 1u); rest != 0; rest &= rest - 1)
+    std::int64_t largest = 0;
+    for (unsigned int i = 0; i < kPacket; ++i)
     {
-      const int i = lowest(rest);
-      for (int axis = 0; axis < 3; ++axis)
-      {
-        this->origin[axis].of[i] = this->origin[axis].of[first];
-        this->direction[axis].of[i] = this->direction[axis].of[first];
-      }
-      this->end.of[i] = this->end.of[first];
+      largest = this->away.of[i] > largest ? this->away.of[i] : largest;
     }
+    this->farthest = largest;
+    return bitsOf(together);
   }
 
   // By ExactShear::longestAxis.
@@ -226,10 +240,10 @@ private:
 struct PacketEntry
 {
   PerRay<float> origin[3], direction[3], end;
-  PerRay<double> start, scale;
-  unsigned int active = 0; // the others repeat one of these
+  PerRay<double> start, scale, toUnits; // toUnits: the scale's reciprocal
+  unsigned int active = 0;              // the others repeat one of these
 
-  // enterBox for all rays, one operation after the other.
+  // enterBox for near rays, one operation after the other.
   HRT_TARGET PacketEntry(const EntryBox& box, const PacketRays& rays)
   {
     PerRay<std::int64_t> within;
@@ -239,6 +253,7 @@ struct PacketEntry
                    z = std::fabs(rays.direction[2].of[i]);
       const double xy = x > y ? x : y;
       this->scale.of[i] = xy > z ? xy : z;
+      this->toUnits.of[i] = 1.0 / this->scale.of[i];
       this->start.of[i] = 0.0;
       within.of[i] = (rays.origin[0].of[i] >= box.lower.x) & (rays.origin[0].of[i] <= box.upper.x) &
         (rays.origin[1].of[i] >= box.lower.y) & (rays.origin[1].of[i] <= box.upper.y) &
@@ -249,18 +264,11 @@ struct PacketEntry
     {
       this->active &= this->clip(box, rays);
     }
-    // inUnitsOf: the reciprocal of a very large number is not a normal one.
-    PerRay<double> shrink, toUnits;
-    for (unsigned int i = 0; i < kPacket; ++i)
-    {
-      shrink.of[i] = this->scale.of[i] < 1e300 ? 1.0 : 0x1p-100;
-      toUnits.of[i] = 1.0 / (this->scale.of[i] * shrink.of[i]);
-    }
     for (int axis = 0; axis < 3; ++axis)
     {
       for (unsigned int i = 0; i < kPacket; ++i)
       {
-        const double along = rays.direction[axis].of[i] * shrink.of[i] * toUnits.of[i];
+        const double along = rays.direction[axis].of[i] * this->toUnits.of[i];
         this->origin[axis].of[i] =
           static_cast<float>(rays.origin[axis].of[i] + this->start.of[i] * along);
         this->direction[axis].of[i] = static_cast<float>(along);
@@ -281,7 +289,7 @@ struct PacketEntry
     {
       one.origin[axis] = this->origin[axis].of[i];
       one.direction[axis] = this->direction[axis].of[i];
-      const double inverse = this->scale.of[i] / rays.direction[axis].of[i];
+      const double inverse = slope(this->scale.of[i], rays.direction[axis].of[i]);
       one.inverse[axis] = static_cast<float>(std::clamp(inverse, -kSteepest, kSteepest));
     }
     one.start = this->start.of[i];
@@ -308,20 +316,20 @@ private:
       double enter = 0.0, leave = rays.end.of[i] * this->scale.of[i];
       for (int axis = 0; axis < 3; ++axis)
       {
-        const double inverse = this->scale.of[i] / rays.direction[axis].of[i];
+        const double inverse = slope(this->scale.of[i], rays.direction[axis].of[i]);
         const double t0 = (lower[axis] - rays.origin[axis].of[i]) * inverse;
         const double t1 = (upper[axis] - rays.origin[axis].of[i]) * inverse;
         const double nearer = t0 < t1 ? t0 : t1, farther = t0 < t1 ? t1 : t0;
         enter = nearer > enter ? nearer : enter;
         leave = farther < leave ? farther : leave;
       }
-      this->start.of[i] = enter;
+      // Of one that does not it may be no float.
+      this->start.of[i] = enter <= leave ? enter : 0.0;
       meets.of[i] = enter <= leave;
     }
     return bitsOf(meets);
   }
 
-  // A ray that has missed the box may have entered it at infinity.
   HRT_LANES void repeatActive()
   {
     const unsigned int rest = this->active ^ ((1u << kPacket) - 1u);

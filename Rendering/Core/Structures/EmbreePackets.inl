@@ -281,22 +281,29 @@ HRT_TARGET void place(
     }
   }
   rays.end = inScene.end;
-  rays.active = part.onlyShifted ? which : which & rays.usable();
+  rays.active = which;
 }
 
-// Those of the packet's rays in the part, as far as they go.
+// Some of the packet's rays in the part, as far as they go.
 template <bool kAny>
 HRT_TARGET void searchPart(
   const TopLevel& scene, const Placed& part, Packet& packet, unsigned int which)
 {
-  PacketRays local;
-  place(part, packet.rays, which, local);
-  if (local.active != 0)
+  const unsigned int far = which & packet.rays.beyond(part.near);
+  for (unsigned int rest = far; rest != 0; rest &= rest - 1)
   {
-    PacketEntry entry(part.hierarchy->entry(), local);
-    PartTracer<kAny> tracer{ scene, part, local, packet, entry };
-    traceTogether(entry, part.hierarchy->box(), tracer);
+    searchSingly<kAny>(packet, lowest(rest),
+      [&](Search& search) HRT_TARGET { searchFar<kAny>(scene, part, search); });
   }
+  if (which == far)
+  {
+    return;
+  }
+  PacketRays local;
+  place(part, packet.rays, which & ~far, local);
+  PacketEntry entry(part.hierarchy->entry(), local);
+  PartTracer<kAny> tracer{ scene, part, local, packet, entry };
+  traceTogether(entry, part.hierarchy->box(), tracer);
 }
 
 template <bool kAny>
@@ -323,7 +330,7 @@ struct SceneTracer
   HRT_LANES float operator()(std::uint32_t leaf, float end)
   {
     const Placed& part = this->scene.leaf(leaf);
-    if (!(kAny ? part.castsShadow : part.visibleToRays))
+    if (!takesPart<kAny>(part))
     {
       return end;
     }
@@ -349,7 +356,16 @@ struct SceneTracer
 template <bool kAny>
 HRT_TARGET void searchScene(const TopLevel& scene, Packet& packet, unsigned int count)
 {
-  if (!packet.rays.take(packet.given, count) || scene.size() == 0)
+  const bool together = packet.rays.take(packet.given, count);
+  const unsigned int far =
+    together && scene.size() > 1 ? packet.rays.active & packet.rays.beyond(scene.near()) : 0u;
+  for (unsigned int rest = packet.rays.alone | far; rest != 0; rest &= rest - 1)
+  {
+    searchSingly<kAny>(packet, lowest(rest),
+      [&scene](Search& search) HRT_TARGET { searchScene<kAny>(scene, search); });
+  }
+  packet.rays.active &= ~far;
+  if (!together || packet.rays.active == 0 || scene.size() == 0)
   {
     return;
   }
@@ -358,6 +374,7 @@ HRT_TARGET void searchScene(const TopLevel& scene, Packet& packet, unsigned int 
     searchPart<kAny>(scene, scene.part(0), packet, packet.rays.active);
     return;
   }
+  packet.rays.repeatActive();
   PacketEntry entry(scene.entry(), packet.rays);
   SceneTracer<kAny> tracer{ scene, packet, entry };
   traceTogether(entry, scene.box(), tracer);

@@ -47,12 +47,6 @@ struct Search
     : ray(&r)
   {
   }
-  // Whether the ray can hit anything, by the exact kernel's rule. Neither this raises a
-  // floating-point exception, nor what follows when it is true.
-  bool usable() const
-  {
-    return this->ray->hasLength() && isUsable(this->ray->origin, this->ray->direction);
-  }
   double end() const { return this->best.valid() ? this->best.t : this->ray->tMaximum; }
 };
 

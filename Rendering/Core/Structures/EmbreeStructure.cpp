@@ -6,6 +6,8 @@
 #include "Rendering/Core/Structures/EmbreeKernels.h"
 #include "Rendering/Core/Structures/EmbreeMerged.h"
 
+#include <glm/gtc/matrix_transform.hpp>
+
 #include <algorithm>
 #include <chrono>
 #include <unordered_map>
@@ -229,6 +231,9 @@ struct EmbreeStructure::Implementation
     result.hierarchy = hierarchy.hierarchy;
     result.fromScene[3] = glm::dvec4(shift, 1.0);
     result.onlyShifted = true;
+    result.placement = Placement(glm::translate(glm::dmat4(1.0), -shift), glm::dmat3(1.0),
+      hierarchy.hierarchy->box().reach());
+    result.setNear();
     result.box.include(hierarchy.hierarchy->box().lower - shift);
     result.box.include(hierarchy.hierarchy->box().upper - shift);
     placed.push_back(std::move(result));
@@ -242,8 +247,12 @@ struct EmbreeStructure::Implementation
     this->addMember(result, part, origin, members);
     const glm::dmat4& toScene = members.back().toScene;
     result.hierarchy = this->owns.at(part.geometry->version);
-    result.fromScene = glm::inverse(toScene);
-    result.onlyShifted = glm::dmat3(result.fromScene) == glm::dmat3(1.0);
+    const glm::dmat3 inverse = glm::inverse(glm::dmat3(toScene));
+    result.fromScene = glm::dmat4(inverse);
+    result.fromScene[3] = glm::dvec4(-(inverse * glm::dvec3(toScene[3])), 1.0);
+    result.onlyShifted = inverse == glm::dmat3(1.0);
+    result.placement = Placement(toScene, inverse, result.hierarchy->box().reach());
+    result.setNear();
     result.box = embree::boxInScene(result.hierarchy->box(), toScene);
     placed.push_back(std::move(result));
   }

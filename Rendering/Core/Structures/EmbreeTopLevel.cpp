@@ -66,6 +66,8 @@ void TopLevel::fit()
     this->Box.include(part.box.upper);
   }
   this->Entry = EntryBox(this->Box);
+  this->Place = Placement(glm::dmat4(1.0), glm::dmat3(1.0), this->Box.reach());
+  this->Near = Placed::nearFor(this->Place, this->Box);
   this->Tree.fit(this->Box.padding(), [this](std::uint32_t leaf) { return this->leaf(leaf).box; });
 }
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "Rendering/Core/Structures/EmbreeHierarchy.h"
+#include "Rendering/Core/Structures/Placement.h"
 
 #include <memory>
 #include <vector>
@@ -18,7 +19,9 @@ struct Placed
   std::shared_ptr<const Hierarchy> hierarchy;
   glm::dmat4 fromScene{ 1.0 };
   bool onlyShifted = false; // fromScene is a translation
-  TraversalBox box;         // in scene coordinates
+  Placement placement;
+  double near = 0.0; // rays from within so much of the scene's coordinates are near ones
+  TraversalBox box;  // in scene coordinates
   std::size_t firstMember = 0;
   bool visibleToRays = false; // some member is
   bool castsShadow = false;
@@ -29,20 +32,27 @@ struct Placed
       box.upper == o.box.upper;
   }
 
-  // The ray as the hierarchy's tree sees it; false when it misses it.
-  HRT_ALWAYS_INLINE bool enter(const Search& search, TraversalRay& local) const
+  // For a near ray all roundings in double are covered by TraversalBox::padding.
+  void setNear() { this->near = nearFor(this->placement, this->hierarchy->box()); }
+  static double nearFor(const Placement& placement, const TraversalBox& box)
+  {
+    return box.reach() * 0x1p-24 / placement.perUnit - placement.sceneReach;
+  }
+
+  // The ray as the hierarchy's tree sees it; false when it misses it. `margin` beyond the padding
+  // is zero for a near ray, whose `box` is the hierarchy's entry.
+  HRT_ALWAYS_INLINE bool enter(
+    const Search& search, const EntryBox& box, double margin, TraversalRay& local) const
   {
     const Ray& ray = *search.ray;
     const glm::dvec3 shift(this->fromScene[3]);
     if (this->onlyShifted)
     {
-      return enterBox(
-        this->hierarchy->entry(), ray.origin + shift, ray.direction, search.end(), local);
+      return enterBox(box, ray.origin + shift, ray.direction, search.end(), margin, local);
     }
     const glm::dmat3 linear(this->fromScene);
-    const glm::dvec3 origin = linear * ray.origin + shift, direction = linear * ray.direction;
-    return isUsable(origin, direction) &&
-      enterBox(this->hierarchy->entry(), origin, direction, search.end(), local);
+    return enterBox(
+      box, linear * ray.origin + shift, linear * ray.direction, search.end(), margin, local);
   }
 };
 
@@ -62,6 +72,9 @@ public:
   const WideTree& tree() const { return this->Tree; }
   const TraversalBox& box() const { return this->Box; }
   const EntryBox& entry() const { return this->Entry; }
+  // Of a placed part: for the upper tree.
+  const Placement& placement() const { return this->Place; }
+  double near() const { return this->Near; }
   const Placed& leaf(std::uint32_t i) const { return this->Parts[this->PartOfLeaf[i]]; }
 
 private:
@@ -72,6 +85,8 @@ private:
   std::vector<Member> Members;
   TraversalBox Box;
   EntryBox Entry;
+  Placement Place;
+  double Near = 0.0;
   WideTree Tree;
   std::vector<std::uint32_t> PartOfLeaf;
   double CostWhenBuilt = 0.0;

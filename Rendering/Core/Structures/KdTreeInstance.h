@@ -1,10 +1,11 @@
-// A kd-tree placed in the scene: whose triangles it is, and how far rounding can move a ray on the way from
-// the scene's coordinates into the tree's.
+// A kd-tree placed in the scene: whose triangles it is, and how far they can lie from a ray that is brought
+// into its coordinates (Placement.h).
 #pragma once
 
 #include "Rendering/Core/Structures/ExactSearch.h"
 #include "Rendering/Core/Structures/KdTree.h"
 #include "Rendering/Core/Structures/KdTreeParts.h"
+#include "Rendering/Core/Structures/Placement.h"
 
 #include <memory>
 
@@ -12,15 +13,6 @@ namespace hrt
 {
 namespace kdtree
 {
-
-// Half an ulp of 1.
-inline constexpr double kRounding = 0x1p-53;
-
-inline double largest(const glm::dvec3& v)
-{
-  const glm::dvec3 a = glm::abs(v);
-  return std::max({ a.x, a.y, a.z });
-}
 
 // A geometry's tree. The geometry is kept alive with it, as Structure promises.
 struct TriangleTree
@@ -35,9 +27,7 @@ struct Instance
   std::shared_ptr<const TriangleTree> triangles;
   PlacedTriangles placed;
   glm::dmat3 inverse{ 1.0 };
-  // Of `slack`, for each unit of `sceneReach` and of the ray's origin.
-  double slackPerUnit = 0.0;
-  double sceneReach = 0.0;
+  Placement placement;
   PartBox box;
   bool visibleToRays = true;
   bool castsShadow = true;
@@ -46,7 +36,7 @@ struct Instance
   // lies within `originReach` of the scene's.
   double slack(double originReach) const
   {
-    return triangles->tree->padding() + slackPerUnit * (originReach + sceneReach);
+    return triangles->tree->padding() + placement.slack(originReach);
   }
 
   bool operator==(const Instance& o) const

@@ -22,10 +22,12 @@ public:
   {
     for (int axis = 0; axis < 3; ++axis)
     {
-      // For a component of zero the largest number stands in for infinity: no 0 * inf, and places in
-      // front of, on and behind the plane are still told apart.
+      // For a component of zero the largest number stands in for infinity: no 0 * inf, no division by
+      // zero, and places in front of, on and behind the plane are still told apart.
       constexpr double kLargest = std::numeric_limits<double>::max();
-      this->Inverse[axis] = std::max(-kLargest, std::min(kLargest, 1.0 / direction[axis]));
+      this->Inverse[axis] = direction[axis] == 0.0
+        ? std::copysign(kLargest, direction[axis])
+        : std::max(-kLargest, std::min(kLargest, 1.0 / direction[axis]));
       this->Negative[axis] = std::signbit(direction[axis]);
       const double grown = this->Negative[axis] ? -slack : slack;
       this->FarOrigin[axis] = origin[axis] + grown;

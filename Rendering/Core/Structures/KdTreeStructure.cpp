@@ -102,7 +102,7 @@ void KdTreeStructure::Implementation::search(const ExactSearch& search,
     return;
   }
   const kdtree::ScaledRay ray(search.ray());
-  const double originReach = kdtree::largest(ray.origin);
+  const double originReach = largest(ray.origin);
   const auto visit = [&](std::size_t i) {
     const Instance& instance = this->instances[i];
     if (instance.*takesPart)
@@ -117,7 +117,7 @@ void KdTreeStructure::Implementation::search(const ExactSearch& search,
     return;
   }
   // As Instance::slack without a change of coordinates: corners, kernel and planes.
-  const double slack = 32.0 * kdtree::kRounding * (originReach + this->parts.reach());
+  const double slack = 32.0 * kRounding * (originReach + this->parts.reach());
   this->parts.traverse(
     KdSlabs(ray.origin, ray.direction, slack), search.end() * ray.perT, visit);
 }

@@ -98,7 +98,7 @@ public:
     double start = 0.0, end = tMaximum * this->Scale;
     for (int axis = 0; axis < 3; ++axis)
     {
-      inverse[axis] = std::clamp(this->Scale / direction[axis], -kLargestFloat, kLargestFloat);
+      inverse[axis] = std::clamp(slope(1.0, along[axis]), -kLargestFloat, kLargestFloat);
       const bool negative = std::signbit(along[axis]);
       const double lower = tree.box().lower[axis] - grown, upper = tree.box().upper[axis] + grown;
       start = std::max(start, ((negative ? upper : lower) - origin[axis]) * inverse[axis]);

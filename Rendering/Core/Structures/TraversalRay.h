@@ -4,7 +4,7 @@
 #pragma once
 
 #include "Rendering/Core/Snapshot.h"
-#include "Rendering/Core/Structures/InstructionSet.h"
+#include "Rendering/Core/Structures/Placement.h"
 
 #include <algorithm>
 #include <cmath>
@@ -38,17 +38,18 @@ struct TraversalBox
   //   R e   the rounding of the origin, which lies on or in the outer box,
   //   R e   that of o * r, which is e |o| in units of r,
   //   R e   that of p * r where the processor does not fuse,
-  //   R e   that of the grown plane itself.
+  //   R e   that of the grown plane itself,
+  //   R e   that of the corners, where they are merged into the coordinates of others,
+  //   R e   everything done in double, for near rays (EmbreeTopLevel.h).
   // The parameter is then off by the factors 1 + e of r and of the difference: beside a parameter
   // of at most 2 H, which is as far as the ray runs within the box, by 4 H e, and |r| >= 1.
-  // Together 4 (R + H) e. The rest of 5 is for everything done in double, a million times finer,
-  // and for kSteepest. The floor keeps a box at the origin from vanishing among the smallest
-  // numbers.
+  // Together 6 R e + 4 H e. The rest of 7 is for kSteepest. The floor keeps a box at the origin
+  // from vanishing among the smallest numbers.
   double padding() const
   {
     const glm::dvec3 side = this->upper - this->lower;
     const double half = 0.5 * std::max({ side.x, side.y, side.z });
-    return std::max(5.0 * 0x1p-24 * (this->reach() + half), 1e-30);
+    return std::max(7.0 * 0x1p-24 * (this->reach() + half), 1e-30);
   }
 };
 
@@ -59,9 +60,10 @@ struct EntryBox
   glm::dvec3 upper{ -std::numeric_limits<double>::infinity() };
 
   EntryBox() = default;
-  explicit EntryBox(const TraversalBox& box)
-    : lower(box.lower - box.padding())
-    , upper(box.upper + box.padding())
+  // `margin`: what it is grown by beyond its padding.
+  explicit EntryBox(const TraversalBox& box, double margin = 0.0)
+    : lower(box.lower - (box.padding() + margin))
+    , upper(box.upper + (box.padding() + margin))
   {
   }
 };
@@ -70,60 +72,76 @@ struct EntryBox
 // admitted is a finite float, and a ray tilted by 1e-18 is, over 2 R, off by far less than R e.
 inline constexpr double kSteepest = 1e18;
 
+// Lengths of directions, by their longest component, for which the exact kernel's t, and its
+// products on the way to it, are normal numbers for all coordinates admitted, and for which `slope`
+// is right. Beyond, the kernel refuses some hits, as infinite or zero, however surely the triangle
+// is met.
+inline constexpr double kShortest = 1e-100, kLongest = 1e100;
+
+// The reciprocal of a component of a direction in units of the longest, from kShortest to kLongest;
+// for none that of a ray tilted by next to nothing. No exception is raised, which hosts may trap,
+// and products with coordinates are finite.
+HRT_ALWAYS_INLINE double slope(double longest, double component)
+{
+  return longest / (component + std::copysign(1e-150, component));
+}
+
 // The ray from where it enters the outer box; parameters count from there, in units such that the
 // direction's longest component is 1 or -1, exactly.
 struct TraversalRay
 {
   glm::vec3 origin;
   glm::vec3 direction;
-  glm::vec3 inverse;  // of the direction, never infinite
-  double start = 0.0; // of the box, in the same units from the true ray's origin
-  double scale = 1.0; // parameter per t
+  glm::vec3 inverse;   // of the direction, never infinite
+  double start = 0.0;  // of the box, in the same units from the true ray's origin
+  double scale = 1.0;  // parameter per t
+  double margin = 0.0; // how far everything may lie from where the numbers say, beyond the padding
 
   // The end of the search for a true t, rounded outward: boxes at the same t stay in. Two ulps are
   // for the two roundings.
   float end(double t) const
   {
-    const double parameter = std::max(t * this->scale - this->start, 0.0);
+    const double parameter = std::max(t * this->scale - this->start + this->margin, 0.0);
     return static_cast<float>(parameter) * (1.0f + 0x1p-22f) + std::numeric_limits<float>::min();
   }
 };
 
+// Asked without arithmetic, which would raise floating-point exceptions in hosts that trap them.
+HRT_ALWAYS_INLINE bool isFinite(const glm::dvec3& v)
+{
+  return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
+}
+
 // A finite ray whose direction is not zero, by the exact kernel's rule: some component is normal.
 HRT_ALWAYS_INLINE bool isUsable(const glm::dvec3& origin, const glm::dvec3& direction)
 {
-  // Asked without arithmetic, which would raise floating-point exceptions in hosts that trap them.
-  for (int axis = 0; axis < 3; ++axis)
+  if (!isFinite(origin) || !isFinite(direction))
   {
-    if (!std::isfinite(origin[axis]) || !std::isfinite(direction[axis]))
-    {
-      return false;
-    }
+    return false;
   }
-  const glm::dvec3 lengths = glm::abs(direction);
-  return std::max({ lengths.x, lengths.y, lengths.z }) >= std::numeric_limits<double>::min();
+  return largest(direction) >= std::numeric_limits<double>::min();
 }
 
-// The direction in units of its longest component. A reciprocal saves two divisions, but that of a
-// very large number is not a normal one.
-inline glm::dvec3 inUnitsOf(double longest, const glm::dvec3& direction)
+// Whether its length is within these; false for what is not a number.
+HRT_ALWAYS_INLINE bool isOrdinary(const glm::dvec3& direction)
 {
-  return longest < 1e300 ? direction * (1.0 / longest) : direction / longest;
+  const glm::dvec3 lengths = sizes(direction);
+  return std::islessequal(lengths.x, kLongest) && std::islessequal(lengths.y, kLongest) &&
+    std::islessequal(lengths.z, kLongest) &&
+    std::max({ lengths.x, lengths.y, lengths.z }) >= kShortest;
 }
 
-// False when the usable ray, up to tMaximum, misses the grown outer box. The bound above holds for
-// origins up to 2^26 reaches away: farther, the rounding of the entry point is no longer small
-// beside the padding.
+// False when the ordinary ray, up to tMaximum, misses the grown outer box. `margin`:
+// TraversalRay's.
 HRT_ALWAYS_INLINE bool enterBox(const EntryBox& box, const glm::dvec3& origin,
-  const glm::dvec3& direction, double tMaximum, TraversalRay& ray)
+  const glm::dvec3& direction, double tMaximum, double margin, TraversalRay& ray)
 {
-  const glm::dvec3 lengths = glm::abs(direction);
-  ray.scale = std::max({ lengths.x, lengths.y, lengths.z });
-  const glm::dvec3 along = inUnitsOf(ray.scale, direction);
-  // A ray parallel to two faces is before both at minus infinity, or before or behind both: the
-  // products say so. Only on a grown face is one no number, and then either answer is right.
-  const glm::dvec3 inverse = ray.scale / direction;
-  double enter = 0.0, leave = tMaximum * ray.scale;
+  ray.scale = largest(direction);
+  ray.margin = margin;
+  const glm::dvec3 along = direction * (1.0 / ray.scale);
+  const glm::dvec3 inverse(
+    slope(ray.scale, direction.x), slope(ray.scale, direction.y), slope(ray.scale, direction.z));
+  double enter = 0.0, leave = tMaximum * ray.scale + margin;
   for (int axis = 0; axis < 3; ++axis)
   {
     const double t0 = (box.lower[axis] - origin[axis]) * inverse[axis];
@@ -131,11 +149,15 @@ HRT_ALWAYS_INLINE bool enterBox(const EntryBox& box, const glm::dvec3& origin,
     enter = std::max(enter, std::min(t0, t1));
     leave = std::min(leave, std::max(t0, t1));
   }
+  if (!(enter <= leave))
+  {
+    return false;
+  }
   ray.start = enter;
   ray.origin = glm::vec3(origin + enter * along);
   ray.direction = glm::vec3(along);
   ray.inverse = glm::vec3(glm::clamp(inverse, -kSteepest, kSteepest));
-  return enter <= leave;
+  return true;
 }
 
 } // namespace hrt

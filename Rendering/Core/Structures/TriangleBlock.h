@@ -5,14 +5,13 @@
 //
 // The edge functions are those of Geometry/TriangleTest.h, rounded to float. Let R be the reach of
 // the hierarchy's box (TraversalRay.h), e = 2^-24. Against the true ray and the true corners,
-//   a corner relative to the origin is off by 4 R e: the corner's own rounding R e, the origin's R
-//   e and that of a difference of up to 2 R; its sheared coordinate by 16 R e: twice the above, the
-//   shear's rounding times a depth of 2 R, the rounding of a product of 2 R and of a difference of
-//   4 R; an edge function, with s the larger |x| + |y| of a corner, by 2 * 16 R e * s for the
-//   factors, 2 (16 R e)^2 for their errors' products and 4 e * 4 R * s for three roundings.
-// Together 48 R e * (s + 16 R e), where a larger s does as well. The rest of 64 is for everything done in double, the kernel's own
-// roundings included: about a million times finer, unless a matrix is so skewed that inverting it
-// loses that (kLargestCondition in Grouping.h keeps such parts out of hierarchies of their own).
+//   a corner relative to the origin is off by 5 R e: the corner's own rounding R e, the origin's R
+//   e, R e for everything done in double (TraversalBox::padding, or what a larger R makes up for), and that of a
+//   difference of up to 2 R; its sheared coordinate by 18 R e: twice the above, the shear's rounding
+//   times a depth of 2 R, the rounding of a product of 2 R and of a difference of 4 R; an edge
+//   function, with s the larger |x| + |y| of a corner, by 2 * 18 R e * s for the factors,
+//   2 (18 R e)^2 for their errors' products and 4 e * 4 R * s for three roundings.
+// Together 52 R e * (s + 13 R e), where a larger s does as well; the rest of 64 and 16 is to spare.
 #pragma once
 
 #include "Rendering/Core/Structures/TraversalRay.h"

@@ -60,6 +60,10 @@ struct Made
 
 } // namespace
 
+// Bounds of an unused child: inside out for every ray, and such that nobody's arithmetic leaves the
+// numbers. Beyond kLargestCoordinate, and times kSteepest still a float.
+constexpr float kBeyond = 1e19f;
+
 // Gathers the nodes of the tree of two into nodes of eight such that the expected number of nodes
 // that a ray meets, the sum of their areas, is the smallest possible: the dynamic programme of
 // H. Ylitie, T. Karras, S. Laine, "Efficient Incoherent Ray Traversal on GPUs Through Compressed
@@ -167,8 +171,8 @@ private:
       this->Nodes[node].child[i] = child;
       for (int axis = 0; axis < 3; ++axis)
       {
-        this->Nodes[node].bound[0][axis][i] = std::numeric_limits<float>::infinity();
-        this->Nodes[node].bound[1][axis][i] = -std::numeric_limits<float>::infinity();
+        this->Nodes[node].bound[0][axis][i] = kBeyond;
+        this->Nodes[node].bound[1][axis][i] = -kBeyond;
       }
     }
     return static_cast<std::uint32_t>(node);

@@ -1,5 +1,5 @@
 // A tree of boxes, eight to a node, in single precision: one node is one step of eight lanes
-// (WideTraversal.inl). Embree's builder decides by the surface area heuristic what lies with what;
+// (EmbreeKernels.inl). Embree's builder decides by the surface area heuristic what lies with what;
 // the boxes are ours, grown by the bound of TraversalRay.h, and can be moved without building anew.
 //
 // Why not Embree's own traversal: a hierarchy over our triangles would be user geometry to it,

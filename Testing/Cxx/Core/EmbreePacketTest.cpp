@@ -5,6 +5,9 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <limits>
+
 namespace
 {
 
@@ -85,6 +88,55 @@ TEST_P(EmbreePacket, UnusableRaysSpoilNoOther)
     rays[random.below(16)].tMaximum = 0.0;
     rays[random.below(16)].origin = { 1e12, 1e12, 1e12 };
     EXPECT_EQ(checks::wrongAnswers(embree, reference, rays), 0);
+  }
+}
+
+// Rays that are not divided: their hull decides for all of them.
+TEST_P(EmbreePacket, OfRaysThatLieTogetherEqualsBruteForce)
+{
+  for (bool twoLevels : { false, true })
+  {
+    EmbreeStructure embree(GetParam());
+    const Snapshot s = scene(embree, twoLevels);
+    scenes::BruteForce reference;
+    reference.update(s);
+    Random random(44);
+    for (int i = 0; i < 40; ++i)
+    {
+      for (int kind = 0; kind < static_cast<int>(checks::Together::Count); ++kind)
+      {
+        const int count = random.below(3) ? 16 : 1 + static_cast<int>(random.below(16));
+        const std::vector<Ray> rays = checks::raysTogether(
+          s, random, checks::Together(kind), count, std::pow(10.0, random(-7.0, -1.0)));
+        EXPECT_EQ(checks::wrongAnswers(embree, reference, rays), 0) << "kind " << kind;
+      }
+    }
+  }
+}
+
+// A ray that begins far off, or is of no ordinary length, spoils no other of its packet.
+TEST_P(EmbreePacket, FarRaysSpoilNoOther)
+{
+  for (bool twoLevels : { false, true })
+  {
+    EmbreeStructure embree(GetParam());
+    const Snapshot s = scene(embree, twoLevels);
+    scenes::BruteForce reference;
+    reference.update(s);
+    Random random(45);
+    for (double away : { 1e6, 1e9, 1e12, 1e15, 1e20, 1e30, 1e60, 1e300 })
+    {
+      for (int i = 0; i < 8; ++i)
+      {
+        std::vector<Ray> rays =
+          checks::raysTogether(s, random, checks::Together::FromOnePoint, 16, 0.02);
+        Ray& far = rays[random.below(16)];
+        far.origin -= away * glm::normalize(far.direction);
+        far.tMaximum = std::numeric_limits<double>::infinity();
+        rays[random.below(16)].direction *= i % 2 ? 1e-290 : 1e290;
+        EXPECT_EQ(checks::wrongAnswers(embree, reference, rays), 0) << away;
+      }
+    }
   }
 }
 

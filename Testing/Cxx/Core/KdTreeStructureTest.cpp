@@ -256,7 +256,7 @@ TEST(KdTreeStructure, TheWidthOfVectorsDoesNotShow)
   {
     const Ray ray = scenes::hardRay(s, random, i);
     const kdtree::ScaledRay scaled(ray);
-    const double reach = kdtree::largest(scaled.origin);
+    const double reach = largest(scaled.origin);
     KdNoCounters none;
     for (const bool wide : { false, kdtree::hasWideVectors() })
     {

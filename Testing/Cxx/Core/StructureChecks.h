@@ -74,6 +74,80 @@ inline std::vector<Ray> raysFromOnePoint(const Snapshot& s, scenes::Random& rand
   return rays;
 }
 
+// The kinds of rays that go through a structure together, each where a packet's bounds are tight.
+enum class Together
+{
+  FromOnePoint,
+  Parallel,
+  AlongAnEdge,     // what decides is an edge function that is nearly zero
+  FromATriangle,   // leaving it, as shadow and mirror rays do
+  AtADiagonal,     // the longest components of the directions tie, or differ
+  ToTheirTargets,  // ending there, as shadow rays do
+  BeginningApart,  // far before one another
+  Count
+};
+
+// Up to sixteen rays within `width` of each other; each leaves from some triangle now and then, or ends
+// early.
+inline std::vector<Ray> raysTogether(
+  const Snapshot& s, scenes::Random& random, Together kind, int count, double width)
+{
+  const glm::dvec3 eye = random.below(4) ? random.inBox(3.0) : randomCorner(s, random);
+  const glm::dvec3 target = randomCorner(s, random);
+  const Corners c = cornersOf(s, static_cast<TriangleId>(random.below(s.triangleCount)));
+  const TriangleId left = static_cast<TriangleId>(random.below(s.triangleCount));
+  const Corners from = cornersOf(s, left);
+  const double first = random(0.0, 1.0);
+  glm::dvec3 diagonal(0.0);
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    diagonal[axis] = random.below(3) - 1.0;
+  }
+  diagonal[random.below(3)] = 1.0;
+  std::vector<Ray> rays(count);
+  for (Ray& ray : rays)
+  {
+    ray.origin = eye + random.inBox(width);
+    ray.direction = target - eye;
+    switch (kind)
+    {
+      case Together::FromOnePoint:
+        ray.origin = eye;
+        ray.direction += random.inBox(width);
+        break;
+      case Together::Parallel:
+      case Together::Count:
+        break;
+      case Together::AlongAnEdge:
+        ray.direction = glm::mix(c.a, c.b, first + random(0.0, width)) - ray.origin;
+        break;
+      case Together::FromATriangle:
+        ray.origin = glm::mix(from.a, glm::mix(from.b, from.c, random(0.0, width)), first);
+        ray.originTriangle = left;
+        break;
+      case Together::AtADiagonal:
+        ray.direction = diagonal;
+        break;
+      case Together::ToTheirTargets:
+        ray.direction = target + random.inBox(width) - ray.origin;
+        ray.tMaximum = 1.0;
+        break;
+      case Together::BeginningApart:
+        ray.origin += random(-3.0, 3.0) * ray.direction;
+        break;
+    }
+    if (random.below(5) == 0)
+    {
+      ray.tMaximum = random(0.0, 2.0);
+    }
+    if (random.below(6) == 0)
+    {
+      ray.originTriangle = static_cast<TriangleId>(random.below(s.triangleCount));
+    }
+  }
+  return rays;
+}
+
 // The rays whose answers differ: single rays, streams of both orders, hits and occlusion.
 inline int wrongAnswers(
   const Structure& structure, const Structure& reference, const std::vector<Ray>& rays)

@@ -2,10 +2,11 @@
 // is a miss.
 #include "Rendering/Core/Structures/EmbreeStructure.h"
 #include "Rendering/Core/Structures/KdTreeStructure.h"
-#include "Scenes.h"
+#include "StructureChecks.h"
 
 #include <gtest/gtest.h>
 
+#include <cfenv>
 #include <cmath>
 #include <limits>
 
@@ -102,6 +103,106 @@ TYPED_TEST(StructureRules, EmptyScenesAndUnusableRaysAreMisses)
     EXPECT_FALSE(structure.intersect(still).valid());
     scenes::addPart(s, scenes::sphere(16, 8), glm::translate(glm::dmat4(1.0), { 5, 0, 0 }));
   }
+}
+
+// A torus in the middle, a ball merged with it, and a part that stands alone since it has moved.
+Snapshot movedScene(Structure& structure, double scale = 1.0)
+{
+  const glm::dmat4 scaled = glm::scale(glm::dmat4(1.0), glm::dvec3(scale));
+  Snapshot s;
+  scenes::addPart(s, scenes::torus(48, 24, 1.5, 0.5), scaled);
+  scenes::addPart(s, scenes::sphere(32, 16), scaled);
+  scenes::addPart(s, scenes::sphere(48, 32), scaled);
+  structure.update(s);
+  s.parts[2].localToWorld[3] = glm::dvec4(scale * glm::dvec3(2, 0.3, 0.1), 1.0);
+  structure.update(s);
+  return s;
+}
+
+// However far away a ray begins, it meets what the exact kernel says: up to about a thousand million
+// times the scene's size that is what is there, and beyond it what rounding makes of it.
+TYPED_TEST(StructureRules, RaysFromFarAwayHitWhatTheKernelHits)
+{
+  TypeParam structure;
+  const Snapshot s = movedScene(structure);
+  scenes::BruteForce reference;
+  reference.update(s);
+  scenes::Random random(51);
+  int hits = 0;
+  for (int exponent = 3; exponent <= 300; exponent += exponent < 24 ? 1 : 23)
+  {
+    std::vector<Ray> rays = checks::randomRays(s, random, 60);
+    for (Ray& ray : rays)
+    {
+      const glm::dvec3 toward = checks::randomCorner(s, random) + random.inBox(1e-3);
+      ray.direction = glm::normalize(random.direction());
+      ray.origin = toward - std::pow(10.0, exponent) * ray.direction;
+      ray.tMaximum = random.below(3) ? kInfinity : std::pow(10.0, exponent);
+      hits += reference.intersect(ray).valid();
+    }
+    EXPECT_EQ(checks::wrongAnswers(structure, reference, rays), 0) << "1e" << exponent;
+  }
+  EXPECT_GT(hits, 500);
+}
+
+// t counts in the direction's length: at the ends of the numbers the kernel refuses a t that is not
+// finite, or zero, and then what lies behind must still be found.
+TYPED_TEST(StructureRules, DirectionsOfAnyLength)
+{
+  for (double size : { 1e-8, 1.0, 100.0, 1e15 })
+  {
+    TypeParam structure;
+    const Snapshot s = movedScene(structure, size);
+    scenes::BruteForce reference;
+    reference.update(s);
+    scenes::Random random(52);
+    for (double length :
+      { 1e-307, 1e-303, 1e-290, 1e-250, 1e-205, 1e-195, 1e-100, 1e100, 1e195, 1e205, 1e290, 1.7e308 })
+    {
+      const glm::dvec3 eye = size * glm::dvec3(0.1, 0.2, 4.0);
+      std::vector<Ray> rays(16);
+      for (Ray& ray : rays)
+      {
+        ray.origin = eye + size * random.inBox(0.01);
+        ray.direction = length * glm::normalize(size * random.inBox(0.01) - eye);
+      }
+      EXPECT_EQ(checks::wrongAnswers(structure, reference, rays), 0) << size << ", " << length;
+    }
+  }
+}
+
+// VTK and its hosts can trap these two (vtkFloatingPointExceptions); no good ray may raise them.
+TYPED_TEST(StructureRules, GoodRaysRaiseNoFloatingPointException)
+{
+  TypeParam structure;
+  const Snapshot s = movedScene(structure);
+  scenes::Random random(53);
+  std::vector<Ray> rays = checks::randomRays(s, random, 400);
+  for (int kind = 0; kind < static_cast<int>(checks::Together::Count); ++kind)
+  {
+    for (int i = 0; i < 20; ++i)
+    {
+      const std::vector<Ray> more =
+        checks::raysTogether(s, random, checks::Together(kind), 16, 0.01);
+      rays.insert(rays.end(), more.begin(), more.end());
+    }
+  }
+  for (std::size_t i = 0; i < rays.size(); i += 3)
+  {
+    rays[i].direction[i % 2] = 0.0; // parallel to an axis' planes
+    rays[i].direction[2] += rays[i].direction[2] == 0.0 ? 1.0 : 0.0;
+  }
+  std::vector<Hit> hits(rays.size());
+  std::vector<std::uint8_t> occluded(rays.size());
+  for (const RayOrder order : { RayOrder::Coherent, RayOrder::Incoherent })
+  {
+    std::feclearexcept(FE_ALL_EXCEPT);
+    structure.intersect(rays.data(), hits.data(), rays.size(), order);
+    structure.occluded(rays.data(), occluded.data(), rays.size(), order);
+    EXPECT_EQ(std::fetestexcept(FE_INVALID), 0) << int(order);
+    EXPECT_EQ(std::fetestexcept(FE_DIVBYZERO), 0) << int(order);
+  }
+  std::feclearexcept(FE_ALL_EXCEPT);
 }
 
 } // namespace
