@@ -91,25 +91,76 @@ TEST_P(EmbreePacket, UnusableRaysSpoilNoOther)
   }
 }
 
+// Triangles of all sizes, at random, or such that much falls together: on a grid, in a plane, nearly so.
+Snapshot soup(Random& random, int shape)
+{
+  std::vector<glm::vec3> corners;
+  for (int i = 0; i < 40; ++i)
+  {
+    const glm::dvec3 at = random.inBox(0.5);
+    const double size = random.below(3) ? std::pow(10.0, random(-3.0, -0.3)) : 0.5;
+    for (int corner = 0; corner < 3; ++corner)
+    {
+      glm::dvec3 point = at + random.inBox(size);
+      switch (shape)
+      {
+        case 1:
+          point = glm::floor(point * 4.0) / 4.0;
+          break;
+        case 2:
+          point.z = 0.25;
+          break;
+        case 3:
+          point.x = 0.0;
+          break;
+        case 4:
+          point.y = point.x * 1e-7;
+          break;
+        default:
+          break;
+      }
+      corners.emplace_back(point);
+    }
+  }
+  Snapshot s;
+  scenes::addPart(s, scenes::makeGeometry(corners));
+  return s;
+}
+
+int wrongTogether(
+  const EmbreeStructure& embree, const Snapshot& s, Random& random, checks::Together kind, int packets)
+{
+  scenes::BruteForce reference;
+  reference.update(s);
+  int wrong = 0;
+  for (int i = 0; i < packets; ++i)
+  {
+    const int count = random.below(3) ? 16 : 1 + static_cast<int>(random.below(16));
+    const double width = std::pow(10.0, random(-7.0, -1.0));
+    wrong += checks::wrongAnswers(
+      embree, reference, checks::raysTogether(s, random, kind, count, width));
+  }
+  return wrong;
+}
+
 // Rays that are not divided: their hull decides for all of them.
 TEST_P(EmbreePacket, OfRaysThatLieTogetherEqualsBruteForce)
 {
-  for (bool twoLevels : { false, true })
+  Random random(44);
+  EmbreeStructure embree(GetParam());
+  for (int kind = 0; kind < static_cast<int>(checks::Together::Count); ++kind)
   {
-    EmbreeStructure embree(GetParam());
-    const Snapshot s = scene(embree, twoLevels);
-    scenes::BruteForce reference;
-    reference.update(s);
-    Random random(44);
-    for (int i = 0; i < 40; ++i)
+    for (bool twoLevels : { false, true })
     {
-      for (int kind = 0; kind < static_cast<int>(checks::Together::Count); ++kind)
-      {
-        const int count = random.below(3) ? 16 : 1 + static_cast<int>(random.below(16));
-        const std::vector<Ray> rays = checks::raysTogether(
-          s, random, checks::Together(kind), count, std::pow(10.0, random(-7.0, -1.0)));
-        EXPECT_EQ(checks::wrongAnswers(embree, reference, rays), 0) << "kind " << kind;
-      }
+      const Snapshot s = scene(embree, twoLevels);
+      EXPECT_EQ(wrongTogether(embree, s, random, checks::Together(kind), 20), 0) << "kind " << kind;
+    }
+    for (int shape = 0; shape < 5; ++shape)
+    {
+      const Snapshot s = soup(random, shape);
+      embree.update(s);
+      EXPECT_EQ(wrongTogether(embree, s, random, checks::Together(kind), 200), 0)
+        << "kind " << kind << ", shape " << shape;
     }
   }
 }

@@ -101,9 +101,10 @@ inline std::vector<Ray> raysTogether(
   glm::dvec3 diagonal(0.0);
   for (int axis = 0; axis < 3; ++axis)
   {
-    diagonal[axis] = random.below(3) - 1.0;
+    diagonal[axis] = static_cast<double>(random.below(3)) - 1.0;
   }
   diagonal[random.below(3)] = 1.0;
+  const double off = random.below(2) ? 1e-9 : 0.0; // of which single precision knows nothing
   std::vector<Ray> rays(count);
   for (Ray& ray : rays)
   {
@@ -126,7 +127,7 @@ inline std::vector<Ray> raysTogether(
         ray.originTriangle = left;
         break;
       case Together::AtADiagonal:
-        ray.direction = diagonal;
+        ray.direction = diagonal + random.inBox(off);
         break;
       case Together::ToTheirTargets:
         ray.direction = target + random.inBox(width) - ray.origin;
