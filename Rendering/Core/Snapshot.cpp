@@ -79,7 +79,8 @@ glm::dmat4 translation(const glm::dvec3& by)
 
 bool sameShape(const Light& a, const Light& b)
 {
-  return a.kind == b.kind && a.isHeadlight == b.isHeadlight && a.position == b.position &&
+  return a.kind == b.kind && a.isHeadlight == b.isHeadlight &&
+    a.castsShadows == b.castsShadows && a.position == b.position &&
     a.direction == b.direction && a.coneAngle == b.coneAngle;
 }
 
@@ -92,7 +93,8 @@ bool sameTriangles(const Part& a, const Part& b)
 {
   return a.key == b.key && a.geometry->version == b.geometry->version &&
     a.firstTriangle == b.firstTriangle && a.visibleToCamera == b.visibleToCamera &&
-    a.visibleToRays == b.visibleToRays && a.castsShadow == b.castsShadow;
+    a.visibleToRays == b.visibleToRays && a.castsShadow == b.castsShadow &&
+    a.tintsShadow == b.tintsShadow;
 }
 
 bool sameCulling(const Material& a, const Material& b)

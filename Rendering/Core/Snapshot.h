@@ -14,7 +14,6 @@
 #include <cstdint>
 #include <limits>
 #include <memory>
-#include <string>
 #include <vector>
 
 namespace hrt
@@ -118,11 +117,18 @@ struct Material
   bool operator!=(const Material& o) const { return !(*this == o); }
 };
 
-// One placed geometry: in VTK's words, one path to a vtkActor.
+// What a part comes from, for the user's buffers.
+struct Source
+{
+  std::uint32_t prop = 0;  // number of the actor's path among those that have parts
+  std::int64_t block = -1; // flat index in composite data; -1: none
+};
+
+// One placed geometry: in VTK's words, what one path to a vtkActor shows, or one block of it.
 struct Part
 {
-  std::uint64_t key = 0;                    // the same for the same actor path in later frames
-  std::string name;                         // for messages: class, address or the actor's name
+  std::uint64_t key = 0;                    // the same for the same path and block in later frames
+  Source source;
   std::shared_ptr<const Geometry> geometry; // never null
   glm::dmat4 localToWorld{ 1.0 };
   Material material;
@@ -130,7 +136,8 @@ struct Part
 
   bool visibleToCamera = true; // in the object intersection buffer; else VTK draws the actor itself
   bool visibleToRays = true;   // seen by reflection and refraction rays
-  bool castsShadow = true;
+  bool castsShadow = true;     // and lets no light through
+  bool tintsShadow = false;    // casts one, but is translucent: takes its share of the light
 
   // Maps Geometry::positions to the world: localToWorld with the geometry's origin folded in.
   glm::dmat4 positionsToWorld() const
@@ -151,6 +158,7 @@ struct Light
   std::uint64_t key = 0;           // the same for the same vtkLight in later frames
   Kind kind = Kind::Directional;
   bool isHeadlight = false;        // moves with the camera and shines along its axis
+  bool castsShadows = true;
   glm::dvec3 position{ 0.0 };      // world; for a directional light only a point on its axis
   glm::dvec3 direction{ 0, 0, -1 };// world, unit length, the way the light travels
   glm::vec3 color{ 1.0f };         // diffuse colour times intensity

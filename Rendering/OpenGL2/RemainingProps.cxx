@@ -3,6 +3,7 @@
 
 #include "Rendering/OpenGL2/GLHeader.h"
 
+#include "vtkActor.h"
 #include "vtkDualDepthPeelingPass.h"
 #include "vtkFrameBufferObjectBase.h"
 #include "vtkOpaquePass.h"
@@ -12,8 +13,9 @@
 #include "vtkOrderIndependentTranslucentPass.h"
 #include "vtkOverlayPass.h"
 #include "vtkProp.h"
-#include "vtkRenderWindow.h"
 #include "vtkRenderState.h"
+#include "vtkRenderWindow.h"
+#include "vtkRenderer.h"
 #include "vtkTranslucentPass.h"
 #include "vtkVolumetricPass.h"
 
@@ -25,6 +27,17 @@ namespace gl
 {
 namespace
 {
+
+// The renderer's count of the props that it has drawn in this frame, which vtkRenderer keeps as it
+// draws its geometry by itself; with a pass nobody does.
+class PropsRendered : public vtkRenderer
+{
+public:
+  static void set(vtkRenderer* renderer, int count)
+  {
+    renderer->*(&PropsRendered::NumberOfPropsRendered) = count;
+  }
+};
 
 bool anyTranslucent(const vtkRenderState& state)
 {
@@ -47,13 +60,13 @@ RemainingProps::RemainingProps() = default;
 RemainingProps::~RemainingProps() = default;
 
 //------------------------------------------------------------------------------
-int RemainingProps::draw(
-  const vtkRenderState* state, const std::function<bool(vtkProp*)>& traced)
+int RemainingProps::draw(const vtkRenderState* state,
+  const std::function<bool(vtkProp*)>& traced, const std::vector<vtkActor*>& hosted)
 {
   vtkRenderer* renderer = state->GetRenderer();
   std::vector<vtkProp*> all(
     state->GetPropArray(), state->GetPropArray() + state->GetPropArrayCount());
-  std::vector<vtkProp*> left;
+  std::vector<vtkProp*> left(hosted.begin(), hosted.end());
   for (vtkProp* prop : all)
   {
     if (!traced(prop))
@@ -91,6 +104,9 @@ int RemainingProps::draw(
 
   if (!peelsVolumes)
   {
+    // Volume mappers on the CPU hide what lies behind the picture's depth only where the renderer says
+    // that something has been drawn.
+    PropsRendered::set(renderer, static_cast<int>(all.size()));
     this->Volumetric->Render(&rest);
     drawn += this->Volumetric->GetNumberOfRenderedProps();
   }

@@ -11,6 +11,7 @@
 #include <functional>
 #include <vector>
 
+class vtkActor;
 class vtkOpaquePass;
 class vtkOpenGLFXAAFilter;
 class vtkOpenGLState;
@@ -34,8 +35,10 @@ public:
   RemainingProps();
   ~RemainingProps();
 
-  // `traced` tells which props are already in the picture. Returns the number of props drawn.
-  int draw(const vtkRenderState* state, const std::function<bool(vtkProp*)>& traced);
+  // `traced` tells which props are already in the picture, `hosted` what is to be drawn besides the
+  // renderer's props. Returns the number of props drawn.
+  int draw(const vtkRenderState* state, const std::function<bool(vtkProp*)>& traced,
+    const std::vector<vtkActor*>& hosted);
 
   void releaseGraphicsResources(vtkWindow* window);
 

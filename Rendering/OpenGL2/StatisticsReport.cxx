@@ -87,11 +87,20 @@ void rays(std::ostream& out, const RayCount& count)
   object.number("traced", count.traced);
 }
 
+void props(std::ostream& out, const PropReasons& list)
+{
+  Object object(out);
+  for (const auto& prop : list)
+  {
+    object.text(prop.first, prop.second);
+  }
+}
+
 } // namespace
 
 //------------------------------------------------------------------------------
 std::string statisticsReport(const FrameStatistics& statistics, const Snapshot& snapshot,
-  const std::vector<std::pair<std::string, std::string>>& leftToVTK)
+  const PropReasons& leftToVTK, const PropReasons& hosted)
 {
   std::ostringstream out;
   out.imbue(std::locale::classic()); // JSON knows no decimal commas
@@ -155,13 +164,8 @@ std::string statisticsReport(const FrameStatistics& statistics, const Snapshot& 
       refused.number("singular_matrices", snapshot.refusals.singularMatrices);
       refused.number("out_of_range_parts", snapshot.refusals.outOfRangeParts);
     }
-    {
-      Object left(report.key("left_to_vtk"));
-      for (const auto& actor : leftToVTK)
-      {
-        left.text(actor.first, actor.second);
-      }
-    }
+    props(report.key("left_to_vtk"), leftToVTK);
+    props(report.key("hosted"), hosted);
     report.number("shadow_map_resolution", statistics.shadowMapResolution);
     report.number("triangles", snapshot.triangleCount);
     report.number("parts", snapshot.parts.size());

@@ -15,9 +15,12 @@ namespace hrt
 namespace gl
 {
 
-// `leftToVTK`: names of the actors that VTK draws itself, each with the reason.
+// Names of props that VTK draws itself, each with the reason.
+using PropReasons = std::vector<std::pair<std::string, std::string>>;
+
+// `leftToVTK`: surfaces that are not traced; `hosted`: what VTK draws by its nature.
 std::string statisticsReport(const FrameStatistics& statistics, const Snapshot& snapshot,
-  const std::vector<std::pair<std::string, std::string>>& leftToVTK);
+  const PropReasons& leftToVTK, const PropReasons& hosted);
 
 } // namespace gl
 } // namespace hrt

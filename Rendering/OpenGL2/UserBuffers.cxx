@@ -121,8 +121,8 @@ vtkSmartPointer<vtkDataArray> makeArray(const std::vector<double>& values, int c
 //------------------------------------------------------------------------------
 const std::vector<std::string>& UserBuffers::knownNames()
 {
-  static const std::vector<std::string> names = { "triangle", "cell", "prop", "barycentric",
-    "position", "normal", "depth", "shadow" };
+  static const std::vector<std::string> names = { "triangle", "cell", "prop", "block",
+    "barycentric", "position", "normal", "depth", "shadow" };
   return names;
 }
 

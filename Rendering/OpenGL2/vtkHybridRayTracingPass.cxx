@@ -4,6 +4,7 @@
 #include "vtkHybridRayTracingPass.h"
 
 #include "Rendering/OpenGL2/Animation.h"
+#include "Rendering/OpenGL2/CompositeMappers.h"
 #include "Rendering/OpenGL2/FrameRenderer.h"
 #include "Rendering/OpenGL2/RemainingProps.h"
 #include "Rendering/OpenGL2/StatisticsReport.h"
@@ -20,8 +21,10 @@
 #include "vtkPropCollection.h"
 #include "vtkRenderState.h"
 #include "vtkRenderer.h"
+#include "vtkWeakPointer.h"
 
 #include <algorithm>
+#include <cstdio>
 #include <exception>
 #include <utility>
 
@@ -86,7 +89,10 @@ public:
   std::unique_ptr<hrt::gl::FrameRenderer> Renderer;
   hrt::gl::RemainingProps Remaining;
   hrt::gl::UserBuffers Buffers;
-  std::string Statistics = "{}";
+  // Of the last frame, for whoever asks; no snapshot: there is none.
+  hrt::gl::FrameStatistics Statistics;
+  std::shared_ptr<const hrt::Snapshot> Snapshot;
+  vtkWeakPointer<vtkRenderer> LastRenderer;
   bool WarnedOfMultisampling = false; // since it was set
 };
 
@@ -94,6 +100,7 @@ public:
 vtkHybridRayTracingPass::vtkHybridRayTracingPass()
   : Internals(new vtkInternals)
 {
+  hrt::gl::registerCompositeMappers();
 }
 
 //------------------------------------------------------------------------------
@@ -107,6 +114,7 @@ void vtkHybridRayTracingPass::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "PrimaryShading: " << kShadings[this->PrimaryShading] << "\n";
   os << indent << "Accelerator: " << kAccelerators[this->Accelerator] << "\n";
   os << indent << "ShadowMode: " << kShadowModes[this->ShadowMode] << "\n";
+  os << indent << "HeadlightShadows: " << (this->HeadlightShadows ? "On" : "Off") << "\n";
   os << indent << "ShadowMapResolution: " << this->ShadowMapResolution << "\n";
   os << indent << "Reflections: " << (this->Reflections ? "On" : "Off") << "\n";
   os << indent << "Refractions: " << (this->Refractions ? "On" : "Off") << "\n";
@@ -214,6 +222,14 @@ void vtkHybridRayTracingPass::SetBuffers(const std::vector<std::string>& names)
 }
 
 //------------------------------------------------------------------------------
+void vtkHybridRayTracingPass::SetBuffers(const char* name)
+{
+  const std::string text = name ? name : "";
+  vtkErrorMacro("SetBuffers takes a list of names and got the string \"" << text
+    << "\"; for one buffer give a list of one, [\"" << text << "\"]");
+}
+
+//------------------------------------------------------------------------------
 std::vector<std::string> vtkHybridRayTracingPass::GetBuffers()
 {
   return this->Internals->Buffers.names();
@@ -252,7 +268,33 @@ vtkProp* vtkHybridRayTracingPass::GetPropFromId(vtkIdType id)
 //------------------------------------------------------------------------------
 std::string vtkHybridRayTracingPass::GetStatistics()
 {
-  return this->Internals->Statistics;
+  vtkInternals& in = *this->Internals;
+  if (!in.Snapshot)
+  {
+    return "{}";
+  }
+  hrt::gl::PropReasons left, hosted;
+  const auto tell = [&](vtkProp* prop, int place) {
+    const std::string reason = in.Scene->GetReasonLeftToVTK(prop);
+    if (!reason.empty())
+    {
+      // By its place among the renderer's view props, which a script can look up.
+      (in.Scene->IsHosted(prop) ? hosted : left)
+        .emplace_back(std::string(prop->GetClassName()) + " #" + std::to_string(place), reason);
+    }
+  };
+  if (in.LastRenderer)
+  {
+    vtkPropCollection* props = in.LastRenderer->GetViewProps();
+    vtkCollectionSimpleIterator at;
+    props->InitTraversal(at);
+    int place = 0;
+    while (vtkProp* prop = props->GetNextProp(at))
+    {
+      tell(prop, place++);
+    }
+  }
+  return hrt::gl::statisticsReport(in.Statistics, *in.Snapshot, left, hosted);
 }
 
 //------------------------------------------------------------------------------
@@ -331,6 +373,7 @@ void vtkHybridRayTracingPass::RenderPicture(const vtkRenderState* s,
   {
     return;
   }
+  this->DrainErrors(false);
   std::string error;
   try
   {
@@ -345,7 +388,7 @@ void vtkHybridRayTracingPass::RenderPicture(const vtkRenderState* s,
   if (!error.empty())
   {
     vtkErrorMacro("the frame is drawn by VTK alone: " << error);
-    this->Internals->Statistics = "{}";
+    this->Internals->Snapshot = nullptr;
     this->UpdateGeometry(renderer, s->GetFrameBuffer());
     this->NumberOfRenderedProps = s->GetPropArrayCount();
     return;
@@ -357,12 +400,28 @@ void vtkHybridRayTracingPass::RenderPicture(const vtkRenderState* s,
   this->NumberOfRenderedProps =
     static_cast<int>(std::count_if(
       s->GetPropArray(), s->GetPropArray() + s->GetPropArrayCount(), isTraced)) +
-    this->Internals->Remaining.draw(s, isTraced);
+    this->Internals->Remaining.draw(s, isTraced, scene->GetHostedActors());
+  this->DrainErrors(true);
+}
 
-  const GLenum glError = glGetError();
-  if (glError != GL_NO_ERROR)
+//------------------------------------------------------------------------------
+void vtkHybridRayTracingPass::DrainErrors(bool own)
+{
+  // OpenGL keeps one error of each kind; a lost context would report one for ever.
+  constexpr int kMostErrors = 16;
+  for (int i = 0; i < kMostErrors; ++i)
   {
-    vtkErrorMacro("OpenGL reported error 0x" << std::hex << glError << std::dec);
+    const GLenum error = glGetError();
+    if (error == GL_NO_ERROR)
+    {
+      return;
+    }
+    if (own)
+    {
+      char number[16];
+      std::snprintf(number, sizeof(number), "0x%04x", static_cast<unsigned int>(error));
+      vtkErrorMacro("OpenGL reported error " << number);
+    }
   }
 }
 
@@ -379,6 +438,7 @@ std::string vtkHybridRayTracingPass::TraceFrame(const vtkRenderState* s,
 {
   vtkInternals& in = *this->Internals;
   vtkRenderer* renderer = s->GetRenderer();
+  in.Scene->SetHeadlightShadows(this->HeadlightShadows);
   in.Scene->Update(renderer, size[0], size[1]);
   const std::shared_ptr<const hrt::Snapshot> snapshot = in.Scene->GetSnapshot();
 
@@ -434,19 +494,8 @@ std::string vtkHybridRayTracingPass::TraceFrame(const vtkRenderState* s,
       vtkErrorMacro("the buffers are not available: " << missing);
     }
   }
-  std::vector<std::pair<std::string, std::string>> left;
-  for (int i = 0; i < s->GetPropArrayCount(); ++i)
-  {
-    vtkProp* prop = s->GetPropArray()[i];
-    const std::string reason = in.Scene->GetReasonLeftToVTK(prop);
-    if (!reason.empty())
-    {
-      // By its place among the renderer's view props, which a script can look up.
-      const int place = renderer->GetViewProps()->IsItemPresent(prop) - 1;
-      left.emplace_back(
-        std::string(prop->GetClassName()) + " #" + std::to_string(place), reason);
-    }
-  }
-  in.Statistics = hrt::gl::statisticsReport(frame.statistics(), *snapshot, left);
+  in.Statistics = frame.statistics();
+  in.Snapshot = snapshot;
+  in.LastRenderer = renderer;
   return {};
 }

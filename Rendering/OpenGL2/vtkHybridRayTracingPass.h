@@ -142,14 +142,26 @@ public:
    * to each light from everything that is seen; shadow rays end on the CPU, which then shades
    * too, whatever PrimaryShading says. The traditional ray tracer (RayCasting, CPU) rasterises
    * nothing: there both names mean rays. Opaque actors cast; glass lets all light through; translucent
-   * actors let it all through shadow maps and tint what passes with shadow rays. A positional headlight
-   * sits in the viewer's eye and shows no shadow. Default: ShadowMaps.
+   * actors let it all through shadow maps and tint what passes with shadow rays. Headlights cast
+   * none unless SetHeadlightShadows is on. Default: ShadowMaps.
    */
   void SetShadowMode(int mode);
   vtkGetMacro(ShadowMode, int);
   void SetShadowModeToOff() { this->SetShadowMode(ShadowsOff); }
   void SetShadowModeToShadowMaps() { this->SetShadowMode(ShadowMaps); }
   void SetShadowModeToExact() { this->SetShadowMode(Exact); }
+  ///@}
+
+  ///@{
+  /**
+   * Whether lights of the kind headlight (vtkLight::SetLightTypeToHeadlight) cast shadows. VTK makes one
+   * for every renderer without lights; it shines from the eye, so that the shadows it casts are hidden
+   * behind what casts them, or nearly. Off, as in VTK's own shadow pass, nothing is drawn or traced for
+   * them. Default: off.
+   */
+  vtkSetMacro(HeadlightShadows, bool);
+  vtkGetMacro(HeadlightShadows, bool);
+  vtkBooleanMacro(HeadlightShadows, bool);
   ///@}
 
   ///@{
@@ -293,8 +305,9 @@ public:
   ///@{
   /**
    * Per-pixel results to keep besides the picture, by name; nothing is computed that was not asked
-   * for. Names: "triangle" (number in the scene), "cell" (vtkPolyData cell), "prop" (see
-   * GetPropFromId), all three 64-bit with -1 where nothing was hit; "barycentric" (u, v of the
+   * for. Names: "triangle" (number in the scene), "cell" (cell of the mapper's input, or of its block),
+   * "prop" (see GetPropFromId), "block" (flat index in composite data, -1 also in other data), all 64-bit
+   * with -1 where nothing was hit; "barycentric" (u, v of the
    * second and third corner; with DirectRendering as the rasteriser interpolated them), "position"
    * (world), "normal" (world, unit, on the viewer's side), "depth" (distance along the view axis),
    * "shadow" (one component a light: its visible share, 1 lit to 0 in shadow), all with NaN where
@@ -302,6 +315,8 @@ public:
    * and changes nothing. GetKnownBuffers lists all names. Default: none.
    */
   void SetBuffers(const std::vector<std::string>& names);
+  // Only to say what is wrong: a script's string is a sequence too, of letters.
+  void SetBuffers(const char* name);
   std::vector<std::string> GetBuffers();
   static std::vector<std::string> GetKnownBuffers();
   ///@}
@@ -314,14 +329,15 @@ public:
   vtkImageData* GetBuffer(const char* name);
 
   /**
-   * The prop of a number in the "prop" buffer; null for -1 and numbers out of range.
+   * The prop of a number in the "prop" buffer: the actor, whichever of its blocks or on whichever path
+   * through assemblies it is seen. Null for -1 and numbers out of range.
    */
   vtkProp* GetPropFromId(vtkIdType id);
 
   /**
    * What the last frame did, as JSON: which stages ran, why or why not, and the host's
    * milliseconds; rays by class; triangles drawn; bytes read back and uploaded; structures built;
-   * triangles refused at the scene's door; actors left to VTK and why. From Python use
+   * triangles refused at the scene's door; actors left to VTK and why, and what VTK draws by its nature. From Python use
    * vtkhybrid.statistics(pass), which returns a dictionary.
    */
   std::string GetStatistics();
@@ -342,6 +358,8 @@ private:
   // Draws everything into the bound framebuffer, size pixels large from origin on.
   void RenderPicture(const vtkRenderState* s, vtkOpenGLRenderWindow* window, const int size[2],
     const int origin[2]);
+  // Takes the errors that OpenGL has kept; those that the pass has made are told of.
+  void DrainErrors(bool own);
   hrt::PixelBounds BoundsWithin(const int size[2]) const;
   // The traced part of it; what went wrong, or empty.
   std::string TraceFrame(const vtkRenderState* s, vtkOpenGLRenderWindow* window,
@@ -351,6 +369,7 @@ private:
   int PrimaryShading = GPU;
   int Accelerator = Embree;
   int ShadowMode = ShadowMaps;
+  bool HeadlightShadows = false;
   int ShadowMapResolution = 2048;
   bool Reflections = true;
   bool Refractions = true;

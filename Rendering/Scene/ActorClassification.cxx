@@ -3,10 +3,9 @@
 #include "Rendering/Scene/ActorClassification.h"
 
 #include "vtkActor.h"
-#include "vtkDataSetMapper.h"
+#include "vtkMapper.h"
 #include "vtkPlaneCollection.h"
-#include "vtkPolyData.h"
-#include "vtkPolyDataMapper.h"
+#include "vtkProp.h"
 #include "vtkProperty.h"
 #include "vtkShaderProperty.h"
 
@@ -20,13 +19,6 @@ namespace scene
 {
 namespace
 {
-
-// Subclasses of vtkPolyDataMapper whose picture is not the surface of their input. Named by text:
-// they live in modules that we do not link, and some exist in a few VTK releases only.
-const char* const kOtherMappers[] = { "vtkCompositePolyDataMapper", "vtkCompositePolyDataMapper2",
-  "vtkCompositeMapperHelper2", "vtkOpenGLBatchedPolyDataMapper", "vtkOpenGLGlyph3DHelper",
-  "vtkPointGaussianMapper", "vtkOpenGLSphereMapper", "vtkOpenGLStickMapper", "vtkSurfaceLICMapper",
-  "vtkOpenGLSurfaceProbeVolumeMapper" };
 
 // Subclasses of vtkActor that place their triangles by rules of their own.
 const char* const kOtherActors[] = { "vtkSkybox" };
@@ -52,11 +44,6 @@ bool hasOwnShaders(vtkActor* actor)
       shaders->HasFragmentShaderCode() || shaders->HasGeometryShaderCode());
 }
 
-bool hasVertsOrLines(vtkPolyData* input)
-{
-  return input->GetNumberOfVerts() > 0 || input->GetNumberOfLines() > 0;
-}
-
 } // anonymous namespace
 
 //------------------------------------------------------------------------------
@@ -66,22 +53,28 @@ const char* describe(LeftToVTK reason)
   {
     case LeftToVTK::No:
       return "";
-    case LeftToVTK::NoActor:
-      return "it holds a prop that is not an actor";
+    case LeftToVTK::NotAnActor:
+      return "not an actor";
+    case LeftToVTK::Volume:
+      return "a volume";
     case LeftToVTK::NoMapper:
       return "the actor has no mapper and draws itself";
+    case LeftToVTK::NoSurface:
+      return "only vertex or line cells";
+    case LeftToVTK::Wireframe:
+      return "drawn as wireframe";
+    case LeftToVTK::Points:
+      return "drawn as points";
+    case LeftToVTK::Translucent:
+      return "translucent";
     case LeftToVTK::OtherActor:
       return "the actor's class places its surface itself";
     case LeftToVTK::OtherMapper:
       return "the mapper draws something other than its input's surface";
     case LeftToVTK::OtherData:
-      return "the mapper's input is not vtkPolyData";
+      return "the mapper's input is of a kind that has no surface";
     case LeftToVTK::SubPieces:
       return "the mapper streams its input in pieces";
-    case LeftToVTK::Wireframe:
-      return "drawn as wireframe";
-    case LeftToVTK::Points:
-      return "drawn as points";
     case LeftToVTK::ClippingPlanes:
       return "clipped by the mapper's planes";
     case LeftToVTK::ProjectiveMatrix:
@@ -96,32 +89,25 @@ const char* describe(LeftToVTK reason)
       return "textured";
     case LeftToVTK::EdgeVisibility:
       return "edges are shown";
-    case LeftToVTK::VertexVisibility:
-      return "vertices are shown";
     case LeftToVTK::PhysicallyBased:
       return "physically based material";
     case LeftToVTK::ShaderReplacements:
       return "shader replacements";
-    case LeftToVTK::VertsOrLines:
-      return "the input has vertex or line cells";
-    case LeftToVTK::Translucent:
-      return "translucent";
   }
   return "";
 }
 
 //------------------------------------------------------------------------------
-bool seenByRays(LeftToVTK reason)
+bool isHosted(LeftToVTK reason)
 {
   switch (reason)
   {
-    case LeftToVTK::No:
-    case LeftToVTK::Texture:
-    case LeftToVTK::EdgeVisibility:
-    case LeftToVTK::VertexVisibility:
-    case LeftToVTK::PhysicallyBased:
-    case LeftToVTK::ShaderReplacements:
-    case LeftToVTK::VertsOrLines:
+    case LeftToVTK::NotAnActor:
+    case LeftToVTK::Volume:
+    case LeftToVTK::NoMapper:
+    case LeftToVTK::NoSurface:
+    case LeftToVTK::Wireframe:
+    case LeftToVTK::Points:
     case LeftToVTK::Translucent:
       return true;
     default:
@@ -130,10 +116,32 @@ bool seenByRays(LeftToVTK reason)
 }
 
 //------------------------------------------------------------------------------
-LeftToVTK classifyMapper(vtkActor* actor)
+bool seenByRays(LeftToVTK reason)
 {
-  vtkMapper* mapper = actor->GetMapper();
-  if (!mapper)
+  switch (reason)
+  {
+    case LeftToVTK::No:
+    case LeftToVTK::Translucent:
+    case LeftToVTK::Texture:
+    case LeftToVTK::EdgeVisibility:
+    case LeftToVTK::PhysicallyBased:
+    case LeftToVTK::ShaderReplacements:
+      return true;
+    default:
+      return false;
+  }
+}
+
+//------------------------------------------------------------------------------
+LeftToVTK classifyProp(vtkProp* prop)
+{
+  return prop->IsA("vtkVolume") ? LeftToVTK::Volume : LeftToVTK::NotAnActor;
+}
+
+//------------------------------------------------------------------------------
+LeftToVTK classifyActor(vtkActor* actor)
+{
+  if (!actor->GetMapper())
   {
     return LeftToVTK::NoMapper;
   }
@@ -141,28 +149,21 @@ LeftToVTK classifyMapper(vtkActor* actor)
   {
     return LeftToVTK::OtherActor;
   }
-  // vtkDataSetMapper hands vtkPolyData unchanged to a vtkPolyDataMapper with its own settings.
-  vtkPolyDataMapper* surface = vtkPolyDataMapper::SafeDownCast(mapper);
-  if ((!surface && !vtkDataSetMapper::SafeDownCast(mapper)) || isAnyOf(mapper, kOtherMappers))
+  switch (actor->GetProperty()->GetRepresentation())
   {
-    return LeftToVTK::OtherMapper;
+    case VTK_POINTS:
+      return LeftToVTK::Points;
+    case VTK_WIREFRAME:
+      return LeftToVTK::Wireframe;
+    default:
+      return LeftToVTK::No;
   }
-  // The whole input never exists at one time then.
-  if (surface && surface->GetNumberOfSubPieces() > 1)
-  {
-    return LeftToVTK::SubPieces;
-  }
-  return LeftToVTK::No;
 }
 
 //------------------------------------------------------------------------------
-LeftToVTK classifySurface(vtkActor* actor, vtkMapper* mapper, vtkPolyData* input, bool isGlass)
+LeftToVTK classifySurface(vtkActor* actor, vtkMapper* mapper, bool isGlass)
 {
   vtkProperty* property = actor->GetProperty();
-  if (property->GetRepresentation() != VTK_SURFACE)
-  {
-    return property->GetRepresentation() == VTK_POINTS ? LeftToVTK::Points : LeftToVTK::Wireframe;
-  }
   if (hasClippingPlanes(mapper))
   {
     return LeftToVTK::ClippingPlanes;
@@ -175,10 +176,6 @@ LeftToVTK classifySurface(vtkActor* actor, vtkMapper* mapper, vtkPolyData* input
   {
     return LeftToVTK::EdgeVisibility;
   }
-  if (property->GetVertexVisibility())
-  {
-    return LeftToVTK::VertexVisibility;
-  }
   if (property->GetInterpolation() == VTK_PBR)
   {
     return LeftToVTK::PhysicallyBased;
@@ -186,10 +183,6 @@ LeftToVTK classifySurface(vtkActor* actor, vtkMapper* mapper, vtkPolyData* input
   if (hasOwnShaders(actor))
   {
     return LeftToVTK::ShaderReplacements;
-  }
-  if (hasVertsOrLines(input))
-  {
-    return LeftToVTK::VertsOrLines;
   }
   // Glass lets light through by refraction; its opacity is not asked.
   if (!isGlass && isTranslucent(actor))

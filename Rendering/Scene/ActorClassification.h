@@ -1,12 +1,13 @@
-// Decides, per actor, whether the tracer draws it or VTK does. The tracer draws plain opaque
-// surfaces, mirrors and glass; whatever else an actor can be - lines, points, textures, physically
-// based materials, translucency - VTK draws better than we could, against our depth buffer. One
-// table of rules holds the whole decision, so that statistics can say why.
+// Decides, per actor, whether the tracer draws it or VTK does. The tracer draws opaque surfaces,
+// mirrors and glass. Lines, points, volumes and what light passes through are VTK's by nature: it
+// draws them against our depth buffer, and they are called hosted. A surface that should be traced
+// and is not is left to VTK, with the reason. One table of rules holds the whole decision, so that
+// statistics can say why.
 #pragma once
 
 class vtkActor;
 class vtkMapper;
-class vtkPolyData;
+class vtkProp;
 
 namespace hrt
 {
@@ -17,15 +18,20 @@ enum class LeftToVTK
 {
   No, // the tracer draws it
 
-  // The actor has no surface that rays could meet, or none that is known.
-  NoActor, // within an assembly: a volume, an image, axes, ...
+  // Hosted: no surface, or one that light passes through.
+  NotAnActor, // a volume, an image, axes, ...
+  Volume,
   NoMapper,
+  NoSurface, // lines and vertices only
+  Wireframe,
+  Points,
+  Translucent, // seen by rays
+
+  // A surface that rays cannot meet, or none that is known.
   OtherActor,
   OtherMapper,
   OtherData,
   SubPieces,
-  Wireframe,
-  Points,
   ClippingPlanes,
   ProjectiveMatrix,
   SingularMatrix,
@@ -35,25 +41,27 @@ enum class LeftToVTK
   // Its triangles are known, and seen in mirrors, but its picture is more than shaded triangles.
   Texture,
   EdgeVisibility,
-  VertexVisibility,
   PhysicallyBased,
-  ShaderReplacements,
-  VertsOrLines,
-  Translucent
+  ShaderReplacements
 };
 
 // A short English phrase; empty for LeftToVTK::No.
 const char* describe(LeftToVTK reason);
 
+// Whether VTK draws it because it is no opaque surface, and not for want of something here.
+bool isHosted(LeftToVTK reason);
+
 // Whether reflection and refraction rays see the actor's triangles.
 bool seenByRays(LeftToVTK reason);
 
-// Whether the actor's mapper is one whose picture is the surface of its input. Asked before the
-// pipeline is updated.
-LeftToVTK classifyMapper(vtkActor* actor);
+// Of a prop that is no actor.
+LeftToVTK classifyProp(vtkProp* prop);
 
-// The rest of the rules, for an actor whose mapper passed and whose pipeline is up to date.
-LeftToVTK classifySurface(vtkActor* actor, vtkMapper* mapper, vtkPolyData* input, bool isGlass);
+// What can be said of an actor before its pipeline is updated.
+LeftToVTK classifyActor(vtkActor* actor);
+
+// The rest of the rules, for an actor that passed and whose pipeline is up to date.
+LeftToVTK classifySurface(vtkActor* actor, vtkMapper* mapper, bool isGlass);
 
 // Some light passes, by opacity of either side, of scalars, or by force.
 bool isTranslucent(vtkActor* actor);

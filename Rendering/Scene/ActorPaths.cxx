@@ -10,6 +10,7 @@
 #include "vtkAssemblyNode.h"
 #include "vtkAssemblyPath.h"
 #include "vtkFollower.h"
+#include "vtkProp3D.h"
 #include "vtkPropAssembly.h"
 #include "vtkPropCollection.h"
 #include "vtkRenderer.h"
@@ -90,7 +91,23 @@ bool hasActorPaths(vtkProp* prop)
     vtkPropAssembly::SafeDownCast(prop);
 }
 
+//------------------------------------------------------------------------------
+ActorPath otherProp(vtkProp* prop)
+{
+  ActorPath path;
+  path.props = { prop };
+  path.visible = prop->GetVisibility();
+  path.key = keyOf(path.props);
+  return path;
+}
+
 } // anonymous namespace
+
+//------------------------------------------------------------------------------
+std::uint64_t keyOfPiece(std::uint64_t path, std::uint64_t piece)
+{
+  return piece == 0 ? path : mix(path + piece);
+}
 
 //------------------------------------------------------------------------------
 std::vector<ActorPath> actorPaths(vtkRenderer* renderer)
@@ -103,6 +120,10 @@ std::vector<ActorPath> actorPaths(vtkRenderer* renderer)
   {
     if (!hasActorPaths(prop))
     {
+      if (vtkProp3D::SafeDownCast(prop))
+      {
+        paths.push_back(otherProp(prop));
+      }
       continue;
     }
     prop->InitPathTraversal();

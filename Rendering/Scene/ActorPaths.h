@@ -28,8 +28,12 @@ struct ActorPath
   std::uint64_t key = 0; // the same for the same path in later frames
 };
 
-// Of the renderer's actors and assemblies, in the order of its view props; props that are culled or hidden are among them.
+// Of the renderer's props but flat ones, in the order of its view props; props that are culled or
+// hidden are among them. A prop that is neither an actor nor an assembly has a path without an actor.
 std::vector<ActorPath> actorPaths(vtkRenderer* renderer);
+
+// The key of one piece of what a path shows; the path's own for piece 0.
+std::uint64_t keyOfPiece(std::uint64_t path, std::uint64_t piece);
 
 } // namespace scene
 } // namespace hrt

@@ -34,19 +34,12 @@ std::string describeProblems(const Extraction& extraction)
   const TriangleReport& report = extraction.report;
   append(refused, report.nonFinitePoints, "with points that are not finite or beyond 1.844e18");
   append(refused, report.invalidIndices, "that name points that do not exist");
-  append(refused, report.degenerateTriangles, "without area");
 
   std::ostringstream text;
   const char* separator = "";
   if (refused.tellp() > 0)
   {
     text << "refused " << refused.str();
-    separator = "; ";
-  }
-  if (report.replacedNormals > 0)
-  {
-    text << separator << "normals that are zero or not finite were replaced by the face's in "
-         << report.replacedNormals << (report.replacedNormals == 1 ? " triangle" : " triangles");
     separator = "; ";
   }
   if (!extraction.colorsComplete)

@@ -18,7 +18,8 @@ namespace scene
 
 struct Extraction;
 
-// What was refused, replaced or left out in the triangles of one part; empty when nothing was.
+// What was refused or left out in the triangles of one part; empty when nothing was. Triangles
+// without area and normals without direction are counted only: VTK says nothing of them either.
 std::string describeProblems(const Extraction& extraction);
 
 class Complaints

@@ -4,6 +4,7 @@
 
 #include "Rendering/Scene/ColorExtraction.h"
 
+#include "vtkDataArray.h"
 #include "vtkMapper.h"
 #include "vtkPolyData.h"
 
@@ -39,18 +40,27 @@ bool sameProblems(const Extraction& a, const Extraction& b)
   return a.report == b.report && a.colorsComplete == b.colorsComplete;
 }
 
+//------------------------------------------------------------------------------
+void nameOriginalCells(vtkDataArray* originals, Geometry& geometry)
+{
+  for (std::int64_t& cell : geometry.cellIds)
+  {
+    cell = originals ? static_cast<std::int64_t>(originals->GetComponent(cell, 0)) : cell;
+  }
+}
+
 } // anonymous namespace
 
 //------------------------------------------------------------------------------
-GeometryCache::Signature GeometryCache::signatureOf(const Source& source)
+GeometryCache::Signature GeometryCache::signatureOf(const GeometrySource& source)
 {
   // A mapper's modification time includes that of its look-up table.
-  return Signature(
-    source.input, source.input->GetMTime(), source.mapper, source.mapper->GetMTime(), source.flat);
+  return Signature(source.input, source.input->GetMTime(), source.mapper,
+    source.mapper->GetMTime(), source.flat, source.plain);
 }
 
 //------------------------------------------------------------------------------
-ExtractionPointer GeometryCache::extract(const Source& source, const Extraction* before)
+ExtractionPointer GeometryCache::extract(const GeometrySource& source, const Extraction* before)
 {
   auto geometry = std::make_shared<Geometry>();
   auto extraction = std::make_shared<Extraction>();
@@ -59,7 +69,9 @@ ExtractionPointer GeometryCache::extract(const Source& source, const Extraction*
   Triangles triangles = triangulate(source.input, points, report);
   writePositions(triangles, points, *geometry, report);
   writeNormals(source.input, source.flat, triangles, *geometry, report);
-  extraction->colorsComplete = writeColors(source.mapper, source.input, triangles, *geometry);
+  extraction->colorsComplete =
+    source.plain || writeColors(source.mapper, source.input, triangles, *geometry);
+  nameOriginalCells(source.originalCells, *geometry);
 
   if (before && sameContent(*before->geometry, *geometry))
   {
@@ -74,7 +86,7 @@ ExtractionPointer GeometryCache::extract(const Source& source, const Extraction*
 }
 
 //------------------------------------------------------------------------------
-ExtractionPointer GeometryCache::get(std::uint64_t part, const Source& source, bool& fresh)
+ExtractionPointer GeometryCache::get(std::uint64_t part, const GeometrySource& source, bool& fresh)
 {
   Record& record = this->Records[part];
   if (record.actor != source.actor)

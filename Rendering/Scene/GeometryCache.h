@@ -15,6 +15,7 @@
 #include <tuple>
 #include <unordered_map>
 
+class vtkDataArray;
 class vtkMapper;
 class vtkPolyData;
 
@@ -30,25 +31,26 @@ struct Extraction
   TriangleReport report;
   bool colorsComplete = true; // else the mapper's colours did not cover the input
 
-  bool clean() const { return report.clean() && colorsComplete; }
 };
 using ExtractionPointer = std::shared_ptr<const Extraction>;
 
 // Everything that triangles and colours depend on. Modification times are unique in the process, so
 // that new data at an old address are not taken for the old ones.
-struct Source
+struct GeometrySource
 {
   vtkActor* actor = nullptr;
   vtkPolyData* input = nullptr;
-  vtkMapper* mapper = nullptr;
-  bool flat = false; // vtkProperty's interpolation, which selects the normals
+  vtkMapper* mapper = nullptr;           // whose settings colour it
+  vtkDataArray* originalCells = nullptr; // see SurfacePiece; comes and goes with the input
+  bool flat = false;  // vtkProperty's interpolation, which selects the normals
+  bool plain = false; // scalars do not count
 };
 
 class GeometryCache
 {
 public:
   // The part's triangles. `fresh` tells that they differ from the part's last ones.
-  ExtractionPointer get(std::uint64_t part, const Source& source, bool& fresh);
+  ExtractionPointer get(std::uint64_t part, const GeometrySource& source, bool& fresh);
 
   // Keeps the part's triangles although it is not drawn in this frame.
   void keep(std::uint64_t part);
@@ -57,7 +59,7 @@ public:
   void endFrame();
 
 private:
-  using Signature = std::tuple<const void*, vtkMTimeType, const void*, vtkMTimeType, bool>;
+  using Signature = std::tuple<const void*, vtkMTimeType, const void*, vtkMTimeType, bool, bool>;
   struct Record
   {
     vtkWeakPointer<vtkActor> actor; // another one may come to live at its address
@@ -66,8 +68,8 @@ private:
     bool used = false;
   };
 
-  static Signature signatureOf(const Source& source);
-  ExtractionPointer extract(const Source& source, const Extraction* before);
+  static Signature signatureOf(const GeometrySource& source);
+  ExtractionPointer extract(const GeometrySource& source, const Extraction* before);
 
   std::unordered_map<std::uint64_t, Record> Records; // by part
   std::map<Signature, ExtractionPointer> Shared;     // actors with the same mapper share triangles

@@ -104,7 +104,7 @@ glm::dvec3 viewAxis(const Camera& camera)
 } // anonymous namespace
 
 //------------------------------------------------------------------------------
-LightRig extractLights(vtkRenderer* renderer, const Camera& camera)
+LightRig extractLights(vtkRenderer* renderer, const Camera& camera, bool headlightShadows)
 {
   LightRig rig;
   rig.singleHeadlight = usesSingleHeadlightFormula(renderer);
@@ -119,6 +119,7 @@ LightRig extractLights(vtkRenderer* renderer, const Camera& camera)
       light.key = reinterpret_cast<std::uintptr_t>(source);
       light.isHeadlight =
         source->LightTypeIsHeadlight() && (rig.singleHeadlight || renderer->GetLightFollowCamera());
+      light.castsShadows = headlightShadows || !source->LightTypeIsHeadlight();
       copyTerms(source, light);
       place(source, renderer, light);
       if (rig.singleHeadlight)

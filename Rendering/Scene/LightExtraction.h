@@ -28,7 +28,7 @@ struct LightRig
   std::vector<Issue> issues;
 };
 
-LightRig extractLights(vtkRenderer* renderer, const Camera& camera);
+LightRig extractLights(vtkRenderer* renderer, const Camera& camera, bool headlightShadows);
 
 } // namespace scene
 } // namespace hrt

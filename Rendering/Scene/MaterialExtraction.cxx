@@ -8,6 +8,7 @@
 #include "vtkActor.h"
 #include "vtkInformation.h"
 #include "vtkInformationDoubleKey.h"
+#include "vtkInformationIntegerKey.h"
 #include "vtkProperty.h"
 
 #include <algorithm>
@@ -21,7 +22,8 @@ namespace
 {
 
 //------------------------------------------------------------------------------
-double nearestValue(const std::vector<vtkProp*>& path, vtkInformationDoubleKey* key)
+template <class Key, class Value>
+Value nearestValue(const std::vector<vtkProp*>& path, Key* key, Value none)
 {
   for (auto prop = path.rbegin(); prop != path.rend(); ++prop)
   {
@@ -31,7 +33,20 @@ double nearestValue(const std::vector<vtkProp*>& path, vtkInformationDoubleKey* 
       return keys->Get(key);
     }
   }
-  return 0.0;
+  return none;
+}
+
+//------------------------------------------------------------------------------
+void apply(const PieceOverrides& overrides, PhongTerms& terms)
+{
+  if (overrides.color)
+  {
+    terms.ambientColor = terms.diffuseColor = terms.specularColor = overrides.colorValue;
+  }
+  if (overrides.opacity)
+  {
+    terms.opacity = overrides.opacityValue;
+  }
 }
 
 //------------------------------------------------------------------------------
@@ -57,15 +72,17 @@ RayKeys readRayKeys(const std::vector<vtkProp*>& path)
   // The keys are open to everyone; what vtkHybridMaterial would have refused is no mirror, no
   // glass.
   RayKeys keys;
-  const double reflectance = nearestValue(path, vtkHybridMaterial::REFLECTANCE());
+  const double reflectance = nearestValue(path, vtkHybridMaterial::REFLECTANCE(), 0.0);
   keys.reflectance = reflectance >= 0.0 && reflectance <= 1.0 ? reflectance : 0.0;
-  const double index = nearestValue(path, vtkHybridMaterial::INDEX_OF_REFRACTION());
+  const double index = nearestValue(path, vtkHybridMaterial::INDEX_OF_REFRACTION(), 0.0);
   keys.indexOfRefraction = index >= 1.0 && std::isfinite(index) ? index : 0.0;
+  keys.castsShadow = nearestValue(path, vtkHybridMaterial::CASTS_SHADOW(), 1) != 0;
   return keys;
 }
 
 //------------------------------------------------------------------------------
-Material extractMaterial(vtkActor* actor, const RayKeys& keys, ColorSource colorSource)
+Material extractMaterial(vtkActor* actor, const RayKeys& keys, ColorSource colorSource,
+  const PieceOverrides& overrides)
 {
   vtkProperty* property = actor->GetProperty();
   Material material;
@@ -75,6 +92,8 @@ Material extractMaterial(vtkActor* actor, const RayKeys& keys, ColorSource color
   vtkProperty* backface =
     colorSource == ColorSource::Property ? actor->GetBackfaceProperty() : nullptr;
   material.back = backface ? phongTerms(backface) : material.front;
+  apply(overrides, material.front);
+  apply(overrides, material.back);
   material.lit = property->GetLighting();
   material.cullFront = property->GetFrontfaceCulling() != 0;
   material.cullBack = property->GetBackfaceCulling() != 0;

@@ -10,10 +10,10 @@
 
 #include "vtkActor.h"
 #include "vtkMapper.h"
-#include "vtkPolyData.h"
 #include "vtkProperty.h"
 #include "vtkRenderer.h"
 
+#include <iterator>
 #include <limits>
 #include <utility>
 
@@ -30,12 +30,6 @@ void add(const TriangleReport& report, Refusals& sum)
   sum.nonFinitePoints += report.nonFinitePoints;
   sum.invalidIndices += report.invalidIndices;
   sum.degenerateTriangles += report.degenerateTriangles;
-}
-
-//------------------------------------------------------------------------------
-bool hasOtherCells(vtkPolyData* input)
-{
-  return input->GetNumberOfVerts() > 0 || input->GetNumberOfLines() > 0;
 }
 
 // The box around all parts.
@@ -77,6 +71,29 @@ struct SceneReader::Draft
   std::vector<const vtkProp*> viewProps; // of the parts: what the renderer holds
   TriangleNumbers numbers;
   SceneBox box;
+  std::uint64_t lastPath = 0; // that was given a number
+
+  // Of a path that has parts. Those of one path follow each other.
+  std::uint32_t numberOf(const ActorPath& path)
+  {
+    std::vector<vtkWeakPointer<vtkProp>>& props = this->frame.props;
+    if (props.empty() || this->lastPath != path.key)
+    {
+      props.emplace_back(path.actor);
+      this->lastPath = path.key;
+    }
+    return static_cast<std::uint32_t>(props.size() - 1);
+  }
+
+  void judge(const ActorPath& path, LeftToVTK left)
+  {
+    for (vtkProp* prop : path.props)
+    {
+      Verdict& verdict = this->frame.verdicts[prop];
+      verdict.drawn = verdict.drawn && left == LeftToVTK::No;
+      verdict.reason = verdict.reason == LeftToVTK::No ? left : verdict.reason;
+    }
+  }
 
   // VTK draws an assembly as a whole. Where one part of it is left to VTK the others come along, so
   // that nothing is drawn twice.
@@ -92,37 +109,33 @@ struct SceneReader::Draft
 };
 
 //------------------------------------------------------------------------------
-// Brings the mapper's input up to date. Null when there is none, with the reason if VTK draws it.
-vtkPolyData* SceneReader::updateInput(
-  vtkMapper* mapper, const ActorPath& path, Snapshot& snapshot, LeftToVTK& left)
+SceneReader::PathMemory& SceneReader::memoryOf(const ActorPath& path)
 {
-  left = LeftToVTK::No;
-  if (mapper->GetNumberOfInputConnections(0) > 0 && !mapper->GetStatic())
+  PathMemory& memory = this->Paths[path.key];
+  if (memory.actor != path.actor)
   {
-    mapper->Update();
+    memory = PathMemory();
+    memory.actor = path.actor;
   }
-  vtkDataObject* data =
-    mapper->GetNumberOfInputConnections(0) > 0 ? mapper->GetInputDataObject(0, 0) : nullptr;
-  if (!data)
-  {
-    ++snapshot.refusals.emptyParts;
-    this->Warnings.addState(
-      path.key, nameOf(path.actor) + ": the mapper has no input; nothing is drawn");
-    return nullptr;
-  }
-  vtkPolyData* input = vtkPolyData::SafeDownCast(data);
-  if (!input)
-  {
-    left = LeftToVTK::OtherData;
-  }
-  return input;
+  memory.used = true;
+  return memory;
 }
 
 //------------------------------------------------------------------------------
-LeftToVTK SceneReader::checkMatrix(const ActorPath& path, Part& part, Snapshot& snapshot)
+// What the path showed last stays known although it is not drawn in this frame.
+void SceneReader::keep(PathMemory& memory)
 {
-  part.localToWorld = path.localToWorld;
-  switch (normaliseMatrix(part.localToWorld))
+  for (const std::uint64_t piece : memory.pieces)
+  {
+    this->Geometries.keep(piece);
+  }
+}
+
+//------------------------------------------------------------------------------
+LeftToVTK SceneReader::checkMatrix(
+  const ActorPath& path, Snapshot& snapshot, glm::dmat4& localToWorld)
+{
+  switch (normaliseMatrix(localToWorld))
   {
     case MatrixState::Good:
       return LeftToVTK::No;
@@ -133,7 +146,8 @@ LeftToVTK SceneReader::checkMatrix(const ActorPath& path, Part& part, Snapshot& 
   }
   ++snapshot.refusals.singularMatrices;
   this->Warnings.addState(path.key,
-    part.name + ": its matrix is not finite or cannot be inverted; left out of ray tracing");
+    nameOf(path.actor) +
+      ": its matrix is not finite or cannot be inverted; left out of ray tracing");
   return LeftToVTK::SingularMatrix;
 }
 
@@ -146,68 +160,141 @@ LeftToVTK SceneReader::addPart(const ActorPath& path, const Part& part, Draft& d
   {
     ++draft.frame.snapshot->refusals.outOfRangeParts;
     this->Errors.addState(path.key,
-      part.name + ": its bounds in the world are beyond 1.844e18; left out of ray tracing");
+      nameOf(path.actor) +
+        ": its bounds in the world are beyond 1.844e18; left out of ray tracing");
     return LeftToVTK::OutOfRange;
   }
   Part numbered = part;
   if (!draft.numbers.take(part.geometry->triangleCount(), numbered.firstTriangle))
   {
     this->Errors.addState(path.key,
-      part.name +
+      nameOf(path.actor) +
         ": the scene has more than 2^32 - 1 triangles with this part's; left out of ray tracing");
     return LeftToVTK::TooManyTriangles;
   }
+  numbered.source.prop = draft.numberOf(path);
   draft.frame.snapshot->parts.push_back(std::move(numbered));
-  draft.frame.props.emplace_back(path.actor);
   draft.viewProps.push_back(path.props.front());
   return LeftToVTK::No;
 }
 
 //------------------------------------------------------------------------------
-LeftToVTK SceneReader::addSurface(
-  const ActorPath& path, vtkMapper* mapper, vtkPolyData* input, Draft& draft)
+ExtractionPointer SceneReader::extract(
+  const ActorPath& path, const SurfacePiece& piece, std::uint64_t key, Refusals& refusals)
 {
-  const RayKeys keys = readRayKeys(path.props);
+  GeometrySource source;
+  source.actor = path.actor;
+  source.input = piece.data;
+  source.mapper = piece.colors;
+  source.originalCells = piece.originalCells;
+  source.flat = path.actor->GetProperty()->GetInterpolation() == VTK_FLAT;
+  source.plain = piece.overrides.color;
+  bool fresh = false;
+  ExtractionPointer extraction = this->Geometries.get(key, source, fresh);
+  add(extraction->report, refusals);
+  const std::string problems = fresh ? describeProblems(*extraction) : std::string();
+  if (!problems.empty())
+  {
+    this->Warnings.addEvent(nameOf(path.actor) + ": " + problems);
+  }
+  return extraction;
+}
+
+//------------------------------------------------------------------------------
+LeftToVTK SceneReader::addPieces(const ActorPath& path, const MapperReading& reading,
+  const RayKeys& keys, PathMemory& memory, Draft& draft)
+{
+  Snapshot& snapshot = *draft.frame.snapshot;
   const bool isGlass = keys.indexOfRefraction > 0.0;
-  const LeftToVTK left = classifySurface(path.actor, mapper, input, isGlass);
+  LeftToVTK left = classifySurface(path.actor, path.actor->GetMapper(), isGlass);
   if (!seenByRays(left))
   {
-    this->Geometries.keep(path.key);
+    this->keep(memory);
     return left;
   }
   Part part;
-  part.key = path.key;
-  part.name = nameOf(path.actor);
-  const LeftToVTK byMatrix = this->checkMatrix(path, part, *draft.frame.snapshot);
+  part.localToWorld = path.localToWorld;
+  const LeftToVTK byMatrix = this->checkMatrix(path, snapshot, part.localToWorld);
   if (byMatrix != LeftToVTK::No)
   {
-    this->Geometries.keep(path.key);
+    this->keep(memory);
     return byMatrix;
   }
+  part.visibleToCamera = left == LeftToVTK::No;
+  const bool translucent = isTranslucent(path.actor);
+  part.castsShadow = keys.castsShadow && !isGlass && !translucent;
+  part.tintsShadow = keys.castsShadow && !isGlass && translucent;
 
-  bool fresh = false;
-  const bool flat = path.actor->GetProperty()->GetInterpolation() == VTK_FLAT;
-  const ExtractionPointer extraction =
-    this->Geometries.get(path.key, { path.actor, input, mapper, flat }, fresh);
-  add(extraction->report, draft.frame.snapshot->refusals);
-  if (fresh && !extraction->clean())
+  memory.pieces.clear();
+  std::size_t surfaces = 0, otherCells = 0;
+  for (const SurfacePiece& piece : reading.pieces)
   {
-    this->Warnings.addEvent(part.name + ": " + describeProblems(*extraction));
+    part.key = keyOfPiece(path.key, piece.key);
+    memory.pieces.push_back(part.key);
+    if (HostedCells::neededFor(piece, path.actor))
+    {
+      ++otherCells;
+      for (vtkActor* shown :
+        memory.hosted[part.key].update(piece, path.actor, path.localToWorld))
+      {
+        draft.frame.hosted.push_back({ shown, path.props.front() });
+      }
+    }
+    const ExtractionPointer extraction =
+      this->extract(path, piece, part.key, snapshot.refusals);
+    part.geometry = extraction->geometry;
+    if (part.geometry->triangleCount() == 0)
+    {
+      continue;
+    }
+    ++surfaces;
+    part.source.block = piece.block;
+    part.material =
+      extractMaterial(path.actor, keys, part.geometry->colorSource, piece.overrides);
+    const LeftToVTK byNumber = this->addPart(path, part, draft);
+    left = left != LeftToVTK::No ? left : byNumber;
   }
-  part.geometry = extraction->geometry;
-  if (part.geometry->triangleCount() == 0)
+  if (surfaces == 0)
   {
     // Points and lines without a surface are nothing that was refused.
-    draft.frame.snapshot->refusals.emptyParts += hasOtherCells(input) ? 0 : 1;
+    snapshot.refusals.emptyParts += otherCells > 0 ? 0 : 1;
+    return otherCells > 0 ? LeftToVTK::NoSurface : left;
+  }
+  return left;
+}
+
+//------------------------------------------------------------------------------
+LeftToVTK SceneReader::addActor(const ActorPath& path, PathMemory& memory, Draft& draft)
+{
+  const LeftToVTK left = classifyActor(path.actor);
+  if (left != LeftToVTK::No)
+  {
+    this->keep(memory);
     return left;
   }
-
-  part.material = extractMaterial(path.actor, keys, part.geometry->colorSource);
-  part.visibleToCamera = left == LeftToVTK::No;
-  part.visibleToRays = true;
-  part.castsShadow = !isGlass && !isTranslucent(path.actor);
-  const LeftToVTK byNumber = this->addPart(path, part, draft);
-  return left != LeftToVTK::No ? left : byNumber;
+  vtkMapper* const mapper = path.actor->GetMapper();
+  if (memory.mapper != mapper)
+  {
+    memory.mapper = mapper;
+    memory.adapter = makeAdapter(mapper);
+    memory.hosted.clear();
+  }
+  if (!memory.adapter)
+  {
+    return LeftToVTK::OtherMapper;
+  }
+  const MapperReading reading = memory.adapter->read(mapper, path.actor);
+  if (reading.left != LeftToVTK::No)
+  {
+    return reading.left;
+  }
+  if (!reading.problem.empty())
+  {
+    ++draft.frame.snapshot->refusals.emptyParts;
+    this->Warnings.addState(path.key, nameOf(path.actor) + ": " + reading.problem);
+    return LeftToVTK::No;
+  }
+  return this->addPieces(path, reading, readRayKeys(path.props), memory, draft);
 }
 
 //------------------------------------------------------------------------------
@@ -217,32 +304,48 @@ void SceneReader::addPath(const ActorPath& path, Draft& draft)
   {
     this->Keys.restore(path);
   }
-  if (!path.visible)
+  else if (path.visible)
   {
-    this->Geometries.keep(path.key);
+    draft.judge(path, classifyProp(path.props.back()));
     return;
   }
-  LeftToVTK left = path.actor ? classifyMapper(path.actor) : LeftToVTK::NoActor;
-  if (left == LeftToVTK::No)
+  else
   {
-    vtkMapper* mapper = path.actor->GetMapper();
-    if (vtkPolyData* input = this->updateInput(mapper, path, *draft.frame.snapshot, left))
-    {
-      left = this->addSurface(path, mapper, input, draft);
-    }
+    return;
   }
-  for (vtkProp* prop : path.props)
+  PathMemory& memory = this->memoryOf(path);
+  if (!path.visible)
   {
-    Verdict& verdict = draft.frame.verdicts[prop];
-    verdict.drawn = verdict.drawn && left == LeftToVTK::No;
-    verdict.reason = verdict.reason == LeftToVTK::No ? left : verdict.reason;
+    this->keep(memory);
+    return;
+  }
+  const LeftToVTK left = this->addActor(path, memory, draft);
+  draft.judge(path, left);
+  if (left != LeftToVTK::No)
+  {
+    this->tellOfOptics(path, left);
   }
 }
 
 //------------------------------------------------------------------------------
-void SceneReader::addLights(vtkRenderer* renderer, Snapshot& snapshot)
+// Who asks for a mirror or for glass and gets neither should know why.
+void SceneReader::tellOfOptics(const ActorPath& path, LeftToVTK left)
 {
-  LightRig rig = extractLights(renderer, snapshot.camera);
+  const RayKeys keys = readRayKeys(path.props);
+  const bool isGlass = keys.indexOfRefraction > 0.0;
+  if (isGlass || keys.reflectance > 0.0)
+  {
+    this->Warnings.addState(path.key,
+      nameOf(path.actor) + " is meant to be " + (isGlass ? "glass" : "a mirror") +
+        ", but VTK draws it: " + describe(left));
+  }
+}
+
+//------------------------------------------------------------------------------
+void SceneReader::addLights(
+  vtkRenderer* renderer, const ReaderSettings& settings, Snapshot& snapshot)
+{
+  LightRig rig = extractLights(renderer, snapshot.camera, settings.headlightShadows);
   for (const LightRig::Issue& issue : rig.issues)
   {
     this->Warnings.addState(issue.key, issue.text);
@@ -252,7 +355,8 @@ void SceneReader::addLights(vtkRenderer* renderer, Snapshot& snapshot)
 }
 
 //------------------------------------------------------------------------------
-Frame SceneReader::read(vtkRenderer* renderer, int width, int height)
+Frame SceneReader::read(
+  vtkRenderer* renderer, int width, int height, const ReaderSettings& settings)
 {
   Draft draft;
   Snapshot& snapshot = *draft.frame.snapshot;
@@ -266,7 +370,7 @@ Frame SceneReader::read(vtkRenderer* renderer, int width, int height)
   snapshot.triangleCount = draft.numbers.taken();
   snapshot.camera = extractCamera(renderer, width, height);
   snapshot.background = extractBackground(renderer, snapshot.camera);
-  this->addLights(renderer, snapshot);
+  this->addLights(renderer, settings, snapshot);
   placeOrigin(draft.box, snapshot);
   return std::move(draft.frame);
 }
@@ -276,6 +380,11 @@ SceneReader::Messages SceneReader::endFrame()
 {
   this->Geometries.endFrame();
   this->Keys.endFrame();
+  for (auto it = this->Paths.begin(); it != this->Paths.end();)
+  {
+    const bool used = std::exchange(it->second.used, false);
+    it = used ? std::next(it) : this->Paths.erase(it);
+  }
   return { this->Warnings.endUpdate(), this->Errors.endUpdate() };
 }
 

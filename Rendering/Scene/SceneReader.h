@@ -7,10 +7,15 @@
 #include "Rendering/Core/Snapshot.h"
 #include "Rendering/Scene/ActorClassification.h"
 #include "Rendering/Scene/ActorPaths.h"
+#include "Rendering/Scene/Adapters/MapperAdapter.h"
 #include "Rendering/Scene/AssemblyKeys.h"
 #include "Rendering/Scene/Complaints.h"
 #include "Rendering/Scene/GeometryCache.h"
+#include "Rendering/Scene/HostedCells.h"
+#include "Rendering/Scene/MaterialExtraction.h"
 
+#include "vtkActor.h"
+#include "vtkMapper.h"
 #include "vtkProp.h"
 #include "vtkWeakPointer.h"
 
@@ -19,8 +24,6 @@
 #include <unordered_map>
 #include <vector>
 
-class vtkMapper;
-class vtkPolyData;
 class vtkRenderer;
 
 namespace hrt
@@ -35,19 +38,33 @@ struct Verdict
   LeftToVTK reason = LeftToVTK::No; // the first reason met
 };
 
+// What VTK draws over the surface of a prop that is traced.
+struct HostedActor
+{
+  vtkSmartPointer<vtkActor> actor;
+  const vtkProp* owner; // the renderer's prop
+};
+
 // One snapshot and what VTK objects its parts came from.
 struct Frame
 {
   std::shared_ptr<Snapshot> snapshot = std::make_shared<Snapshot>();
-  std::vector<vtkWeakPointer<vtkProp>> props; // of the parts
+  std::vector<vtkWeakPointer<vtkProp>> props; // by Source::prop
   std::unordered_map<const vtkProp*, Verdict> verdicts;
+  std::vector<HostedActor> hosted;
+};
+
+// What the user decides about reading.
+struct ReaderSettings
+{
+  bool headlightShadows = false; // lights of VTK's kind headlight cast shadows
 };
 
 class SceneReader
 {
 public:
   // Pipelines are brought up to date. May throw what memory or a pipeline does.
-  Frame read(vtkRenderer* renderer, int width, int height);
+  Frame read(vtkRenderer* renderer, int width, int height, const ReaderSettings& settings);
 
   // What there is to tell of the frame, a line each; empty where there is nothing new.
   struct Messages
@@ -61,14 +78,31 @@ public:
 private:
   struct Draft; // a frame that is being put together
 
-  void addPath(const ActorPath& path, Draft& draft);
-  LeftToVTK addSurface(const ActorPath& path, vtkMapper* mapper, vtkPolyData* input, Draft& draft);
-  LeftToVTK addPart(const ActorPath& path, const Part& part, Draft& draft);
-  LeftToVTK checkMatrix(const ActorPath& path, Part& part, Snapshot& snapshot);
-  vtkPolyData* updateInput(
-    vtkMapper* mapper, const ActorPath& path, Snapshot& snapshot, LeftToVTK& left);
-  void addLights(vtkRenderer* renderer, Snapshot& snapshot);
+  // What is kept of a path from frame to frame.
+  struct PathMemory
+  {
+    vtkWeakPointer<vtkActor> actor; // another one may come to live at its address
+    vtkWeakPointer<vtkMapper> mapper;
+    std::unique_ptr<MapperAdapter> adapter; // null: no kind reads the mapper
+    std::vector<std::uint64_t> pieces;      // keys of the last frame's
+    std::unordered_map<std::uint64_t, HostedCells> hosted; // by piece
+    bool used = false;
+  };
+  PathMemory& memoryOf(const ActorPath& path);
+  void keep(PathMemory& memory);
 
+  LeftToVTK addActor(const ActorPath& path, PathMemory& memory, Draft& draft);
+  LeftToVTK addPieces(const ActorPath& path, const MapperReading& reading, const RayKeys& keys,
+    PathMemory& memory, Draft& draft);
+  LeftToVTK addPart(const ActorPath& path, const Part& part, Draft& draft);
+  LeftToVTK checkMatrix(const ActorPath& path, Snapshot& snapshot, glm::dmat4& localToWorld);
+  ExtractionPointer extract(const ActorPath& path, const SurfacePiece& piece, std::uint64_t key,
+    Refusals& refusals);
+  void addPath(const ActorPath& path, Draft& draft);
+  void tellOfOptics(const ActorPath& path, LeftToVTK left);
+  void addLights(vtkRenderer* renderer, const ReaderSettings& settings, Snapshot& snapshot);
+
+  std::unordered_map<std::uint64_t, PathMemory> Paths;
   GeometryCache Geometries;
   AssemblyKeys Keys;
   Complaints Warnings;

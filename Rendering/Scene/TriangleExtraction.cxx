@@ -109,19 +109,79 @@ void appendFan(const vtkIdType* ids, vtkIdType count, vtkIdType cell, Triangles&
 }
 
 //------------------------------------------------------------------------------
-// Cuts ears. False, and nothing appended, when the polygon cannot be triangulated, for instance
-// because it crosses itself.
-bool appendEars(
-  const vtkIdType* ids, vtkIdType count, const Points& points, vtkIdType cell, Triangles& triangles)
+// Whether the border runs from a to b and back over itself to c.
+bool isSpike(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c)
 {
+  return areaVector(a, b, c) == glm::dvec3(0.0) && glm::dot(b - a, c - b) < 0.0;
+}
+
+//------------------------------------------------------------------------------
+// The polygon without what encloses nothing: corners that repeat the one before - map makers write
+// the first once more at the end - and ways there and back. Neither changes its area, but both
+// keep it from being cut into ears. A corner taken out may leave another of the kind: the corners
+// kept so far are looked at again.
+std::vector<vtkIdType> simpleBorder(const vtkIdType* ids, vtkIdType count, const Points& points)
+{
+  std::vector<vtkIdType> border;
+  const auto at = [&](std::size_t fromEnd) { return points[border[border.size() - fromEnd]]; };
+  for (vtkIdType i = 0; i < count; ++i)
+  {
+    border.push_back(ids[i]);
+    for (bool changed = true; changed;)
+    {
+      changed = border.size() > 1 && at(1) == at(2);
+      if (changed)
+      {
+        border.pop_back();
+        continue;
+      }
+      changed = border.size() > 2 && isSpike(at(3), at(2), at(1));
+      if (changed)
+      {
+        border.erase(border.end() - 2);
+      }
+    }
+  }
+  // The same where the end meets the beginning.
+  for (bool changed = true; changed && border.size() > 2;)
+  {
+    const glm::dvec3 &first = points[border.front()], &second = points[border[1]];
+    const bool endRepeats = at(1) == first || isSpike(at(2), at(1), first);
+    const bool beginningIsSpike = !endRepeats && isSpike(at(1), first, second);
+    changed = endRepeats || beginningIsSpike;
+    if (endRepeats)
+    {
+      border.pop_back();
+    }
+    else if (beginningIsSpike)
+    {
+      border.erase(border.begin());
+    }
+  }
+  return border;
+}
+
+//------------------------------------------------------------------------------
+// Cuts ears, of the polygon as seen along its normal: corners a little off the plane do not matter.
+// False, and nothing appended, when it cannot be triangulated, for instance because it crosses itself.
+bool appendEars(
+  const std::vector<vtkIdType>& ids, const Points& points, vtkIdType cell, Triangles& triangles)
+{
+  const auto count = static_cast<vtkIdType>(ids.size());
+  const glm::dvec3 normal = glm::normalize(polygonNormal(ids.data(), count, points));
+  const glm::dvec3 size = glm::abs(normal);
+  const glm::dvec3 across = size.x <= size.y && size.x <= size.z ? glm::dvec3(1, 0, 0)
+    : size.y <= size.z                                           ? glm::dvec3(0, 1, 0)
+                                                                 : glm::dvec3(0, 0, 1);
+  const glm::dvec3 u = glm::normalize(glm::cross(across, normal)), v = glm::cross(normal, u);
   vtkNew<vtkPolygon> polygon;
   polygon->GetPoints()->SetDataTypeToDouble();
   polygon->GetPoints()->SetNumberOfPoints(count);
   polygon->GetPointIds()->SetNumberOfIds(count);
   for (vtkIdType i = 0; i < count; ++i)
   {
-    const glm::dvec3& p = points[ids[i]];
-    polygon->GetPoints()->SetPoint(i, p.x, p.y, p.z);
+    const glm::dvec3 p = points[ids[i]] - points[ids[0]];
+    polygon->GetPoints()->SetPoint(i, glm::dot(p, u), glm::dot(p, v), 0.0);
     polygon->GetPointIds()->SetId(i, i);
   }
   vtkNew<vtkIdList> corners;
@@ -142,10 +202,22 @@ bool appendEars(
 void appendPolygon(
   const vtkIdType* ids, vtkIdType count, const Points& points, vtkIdType cell, Triangles& triangles)
 {
-  if (count == 3 || fanIsRight(ids, count, points) ||
-    !appendEars(ids, count, points, cell, triangles))
+  if (count == 3 || fanIsRight(ids, count, points))
   {
     appendFan(ids, count, cell, triangles);
+    return;
+  }
+  const std::vector<vtkIdType> border = simpleBorder(ids, count, points);
+  const auto corners = static_cast<vtkIdType>(border.size());
+  const bool simple = corners >= 3;
+  if (simple &&
+    (fanIsRight(border.data(), corners, points) || !appendEars(border, points, cell, triangles)))
+  {
+    appendFan(border.data(), corners, cell, triangles);
+  }
+  else if (!simple)
+  {
+    appendFan(ids, count, cell, triangles); // without area, to be counted as such
   }
 }
 

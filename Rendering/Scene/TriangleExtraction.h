@@ -34,10 +34,6 @@ struct TriangleReport
   std::uint64_t degenerateTriangles = 0;
   std::uint64_t replacedNormals = 0; // triangles whose normals were not numbers
 
-  bool clean() const
-  {
-    return !nonFinitePoints && !invalidIndices && !degenerateTriangles && !replacedNormals;
-  }
   bool operator==(const TriangleReport& o) const
   {
     return nonFinitePoints == o.nonFinitePoints && invalidIndices == o.invalidIndices &&

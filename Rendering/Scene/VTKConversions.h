@@ -3,6 +3,7 @@
 #pragma once
 
 #include "vtkMatrix4x4.h"
+#include "vtkSmartPointer.h"
 
 #include <glm/glm.hpp>
 
@@ -19,6 +20,19 @@ inline glm::dmat4 toMatrix(const vtkMatrix4x4* matrix)
     for (int column = 0; column < 4; ++column)
     {
       result[column][row] = matrix->GetElement(row, column);
+    }
+  }
+  return result;
+}
+
+inline vtkSmartPointer<vtkMatrix4x4> fromMatrix(const glm::dmat4& matrix)
+{
+  auto result = vtkSmartPointer<vtkMatrix4x4>::New();
+  for (int row = 0; row < 4; ++row)
+  {
+    for (int column = 0; column < 4; ++column)
+    {
+      result->SetElement(row, column, matrix[column][row]);
     }
   }
   return result;

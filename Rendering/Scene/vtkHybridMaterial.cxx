@@ -5,6 +5,7 @@
 
 #include "vtkInformation.h"
 #include "vtkInformationDoubleKey.h"
+#include "vtkInformationIntegerKey.h"
 #include "vtkNew.h"
 #include "vtkObjectFactory.h"
 #include "vtkProp.h"
@@ -15,6 +16,7 @@ VTK_ABI_NAMESPACE_BEGIN
 vtkStandardNewMacro(vtkHybridMaterial);
 vtkInformationKeyMacro(vtkHybridMaterial, REFLECTANCE, Double);
 vtkInformationKeyMacro(vtkHybridMaterial, INDEX_OF_REFRACTION, Double);
+vtkInformationKeyMacro(vtkHybridMaterial, CASTS_SHADOW, Integer);
 
 namespace
 {
@@ -37,7 +39,8 @@ vtkInformation* keysOf(vtkProp* prop)
 }
 
 //------------------------------------------------------------------------------
-double valueOr(vtkProp* prop, vtkInformationDoubleKey* key, double fallback)
+template <class Key, class Value>
+Value valueOr(vtkProp* prop, Key* key, Value fallback)
 {
   vtkInformation* keys = prop ? prop->GetPropertyKeys() : nullptr;
   return keys && keys->Has(key) ? keys->Get(key) : fallback;
@@ -95,6 +98,23 @@ double vtkHybridMaterial::GetIndexOfRefraction(vtkProp* prop)
 }
 
 //------------------------------------------------------------------------------
+void vtkHybridMaterial::SetCastsShadow(vtkProp* prop, bool castsShadow)
+{
+  if (!prop)
+  {
+    vtkErrorWithObjectMacro(nullptr, "vtkHybridMaterial::SetCastsShadow needs a prop.");
+    return;
+  }
+  keysOf(prop)->Set(CASTS_SHADOW(), castsShadow ? 1 : 0);
+}
+
+//------------------------------------------------------------------------------
+bool vtkHybridMaterial::GetCastsShadow(vtkProp* prop)
+{
+  return valueOr(prop, CASTS_SHADOW(), 1) != 0;
+}
+
+//------------------------------------------------------------------------------
 void vtkHybridMaterial::Clear(vtkProp* prop)
 {
   if (!prop)
@@ -107,6 +127,7 @@ void vtkHybridMaterial::Clear(vtkProp* prop)
   vtkInformation* keys = keysOf(prop);
   keys->Remove(REFLECTANCE());
   keys->Remove(INDEX_OF_REFRACTION());
+  keys->Remove(CASTS_SHADOW());
 }
 
 //------------------------------------------------------------------------------

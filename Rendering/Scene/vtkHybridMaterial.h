@@ -3,8 +3,8 @@
  * @brief   mirrors and glass for the actors of a scene
  *
  * vtkProperty describes how a surface answers to lights, but knows neither mirror images nor
- * refraction. vtkHybridMaterial adds the two numbers that vtkHybridRayTracingPass needs for them.
- * It has static methods only; the values live in the prop's property keys
+ * refraction. vtkHybridMaterial adds the two numbers that vtkHybridRayTracingPass needs for them,
+ * and whether a prop casts shadows. It has static methods only; the values live in the prop's property keys
  * (vtkProp::GetPropertyKeys), so that they are copied by vtkProp::ShallowCopy and cost nothing for
  * props without them.
  *
@@ -26,6 +26,7 @@
 VTK_ABI_NAMESPACE_BEGIN
 
 class vtkInformationDoubleKey;
+class vtkInformationIntegerKey;
 class vtkProp;
 
 class VTKHYBRIDRENDERINGSCENE_EXPORT vtkHybridMaterial : public vtkObject
@@ -59,8 +60,18 @@ public:
   static double GetIndexOfRefraction(vtkProp* prop);
   ///@}
 
+  ///@{
   /**
-   * Make a prop an ordinary one again: neither mirror nor glass.
+   * Set/Get whether a prop casts shadows. Off, light passes it as if it were not there, while it is
+   * seen and receives shadows as before: for the mesh of a lamp or a sun that has a light inside.
+   * Glass casts no shadow either way. Default: true.
+   */
+  static void SetCastsShadow(vtkProp* prop, bool castsShadow);
+  static bool GetCastsShadow(vtkProp* prop);
+  ///@}
+
+  /**
+   * Make a prop an ordinary one again: neither mirror nor glass, and casting shadows.
    */
   static void Clear(vtkProp* prop);
 
@@ -71,6 +82,7 @@ public:
    */
   static vtkInformationDoubleKey* REFLECTANCE();
   static vtkInformationDoubleKey* INDEX_OF_REFRACTION();
+  static vtkInformationIntegerKey* CASTS_SHADOW();
   ///@}
 
 protected:

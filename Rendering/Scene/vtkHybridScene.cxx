@@ -27,6 +27,7 @@ public:
   hrt::Changes Changes;
   vtkWeakPointer<vtkRenderer> LastRenderer;
   SceneReader Reader;
+  ReaderSettings Settings;
 
   SceneReader::Messages Update(vtkRenderer* renderer, int width, int height);
 };
@@ -35,7 +36,7 @@ public:
 SceneReader::Messages vtkHybridScene::vtkInternals::Update(
   vtkRenderer* renderer, int width, int height)
 {
-  Frame frame = this->Reader.read(renderer, width, height);
+  Frame frame = this->Reader.read(renderer, width, height, this->Settings);
   const bool sameRenderer = this->LastRenderer == renderer;
   this->Changes =
     hrt::compareSnapshots(sameRenderer ? this->Current.snapshot.get() : nullptr, *frame.snapshot);
@@ -104,10 +105,37 @@ const hrt::Changes& vtkHybridScene::GetChanges() const
 }
 
 //------------------------------------------------------------------------------
-vtkProp* vtkHybridScene::GetProp(std::size_t part) const
+void vtkHybridScene::SetHeadlightShadows(bool on)
+{
+  this->Internals->Settings.headlightShadows = on;
+}
+
+//------------------------------------------------------------------------------
+bool vtkHybridScene::GetHeadlightShadows() const
+{
+  return this->Internals->Settings.headlightShadows;
+}
+
+//------------------------------------------------------------------------------
+vtkProp* vtkHybridScene::GetProp(std::size_t prop) const
 {
   const auto& props = this->Internals->Current.props;
-  return part < props.size() ? props[part].GetPointer() : nullptr;
+  return prop < props.size() ? props[prop].GetPointer() : nullptr;
+}
+
+//------------------------------------------------------------------------------
+std::vector<vtkActor*> vtkHybridScene::GetHostedActors() const
+{
+  const Frame& frame = this->Internals->Current;
+  std::vector<vtkActor*> actors;
+  for (const HostedActor& hosted : frame.hosted)
+  {
+    if (frame.verdicts.at(hosted.owner).drawn)
+    {
+      actors.push_back(hosted.actor);
+    }
+  }
+  return actors;
 }
 
 //------------------------------------------------------------------------------
@@ -124,6 +152,14 @@ const char* vtkHybridScene::GetReasonLeftToVTK(vtkProp* prop) const
   const auto& verdicts = this->Internals->Current.verdicts;
   const auto found = verdicts.find(prop);
   return describe(found == verdicts.end() ? LeftToVTK::No : found->second.reason);
+}
+
+//------------------------------------------------------------------------------
+bool vtkHybridScene::IsHosted(vtkProp* prop) const
+{
+  const auto& verdicts = this->Internals->Current.verdicts;
+  const auto found = verdicts.find(prop);
+  return found != verdicts.end() && isHosted(found->second.reason);
 }
 
 //------------------------------------------------------------------------------

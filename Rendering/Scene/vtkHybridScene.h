@@ -13,8 +13,9 @@
  * Bad input is refused at this door: triangles that name missing points, have coordinates that are
  * not finite or beyond 1.844e18, or have no area; parts whose matrix cannot be inverted, or whose
  * bounds in the world are beyond 1.844e18. Each part is told of once; all that is new in an update
- * takes one warning and one error, which name the first three parts and count the others. The sums
- * are in hrt::Snapshot::refusals.
+ * takes one warning and one error, which name the first three parts and count the others. Triangles
+ * without area are counted without a word, as VTK draws nothing of them. The sums are in
+ * hrt::Snapshot::refusals.
  *
  * @sa
  * vtkHybridRayTracingPass vtkHybridMaterial
@@ -29,6 +30,7 @@
 
 #include <cstddef> // For std::size_t
 #include <memory>  // For std::shared_ptr
+#include <vector>  // For std::vector
 
 namespace hrt
 {
@@ -38,6 +40,7 @@ struct Snapshot;
 
 VTK_ABI_NAMESPACE_BEGIN
 
+class vtkActor;
 class vtkProp;
 class vtkRenderer;
 
@@ -71,11 +74,26 @@ public:
    */
   const hrt::Changes& GetChanges() const;
 
+  ///@{
   /**
-   * The actor of a part of the snapshot (an index into hrt::Snapshot::parts). Null when there is no
-   * such part or the actor has been deleted since.
+   * Set/Get whether lights of the kind headlight (vtkLight::LightTypeIsHeadlight) cast shadows. Off,
+   * as in VTK's own shadow pass. Default: false.
    */
-  vtkProp* GetProp(std::size_t part) const;
+  void SetHeadlightShadows(bool on);
+  bool GetHeadlightShadows() const;
+  ///@}
+
+  /**
+   * The actor with the number hrt::Source::prop of the snapshot's parts. Null when there is no such
+   * number or the actor has been deleted since.
+   */
+  vtkProp* GetProp(std::size_t prop) const;
+
+  /**
+   * The actors that VTK has to draw over the surfaces of props that the tracer draws: the lines and
+   * vertices of their data.
+   */
+  std::vector<vtkActor*> GetHostedActors() const;
 
   /**
    * Whether the tracer draws all that VTK would draw for this prop: an actor, or an assembly with
@@ -86,9 +104,15 @@ public:
 
   /**
    * Why VTK has to draw the prop itself: a short English phrase for statistics. Empty when the
-   * tracer draws it or the prop is hidden or not an actor, nor an assembly of actors.
+   * tracer draws it or the prop is hidden or flat (a vtkActor2D).
    */
   const char* GetReasonLeftToVTK(vtkProp* prop) const;
+
+  /**
+   * Whether that reason is the prop's nature - lines, points, volumes, what light passes through -
+   * and not a surface that the tracer should draw and does not.
+   */
+  bool IsHosted(vtkProp* prop) const;
 
 protected:
   vtkHybridScene();

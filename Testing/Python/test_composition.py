@@ -6,7 +6,13 @@ import pytest
 import scenes
 import vtkmodules.vtkRenderingVolumeOpenGL2  # noqa: F401
 from vtkhybrid import statistics, vtkHybridMaterial, vtkHybridRayTracingPass
-from vtkmodules.vtkCommonDataModel import vtkPiecewiseFunction
+from vtkmodules.vtkCommonDataModel import (
+    vtkCellArray,
+    vtkPiecewiseFunction,
+    vtkPlane,
+    vtkPolyData,
+)
+from vtkmodules.vtkFiltersCore import vtkAppendPolyData
 from vtkmodules.vtkFiltersSources import vtkLineSource, vtkPointSource
 from vtkmodules.vtkImagingCore import vtkRTAnalyticSource
 from vtkmodules.vtkImagingSources import vtkImageCanvasSource2D
@@ -187,7 +193,7 @@ def test_assembly_with_a_prop_that_is_no_actor(kind, render):
     scenes.look(renderer, (0.6, 1.2, 4))
     rt, wrong = compare(renderer, render)
     assert wrong < OUTLINE_SHARE
-    assert "not an actor" in next(iter(statistics(rt)["left_to_vtk"].values()))
+    assert "not an actor" in next(iter(statistics(rt)["hosted"].values()))
 
 
 def test_image_based_lighting_survives(render):
@@ -250,14 +256,66 @@ def test_translucent_layers(peeling, render):
 
 
 def test_statistics_name_what_is_left_to_vtk(render):
-    renderer = scenes.renderer_of(ball(), textured(), lines())
+    """Surfaces that are not traced apart from what VTK draws by its nature."""
+    clipped = ball(0.5)
+    clipped.GetMapper().AddClippingPlane(vtkPlane())
+    guests = [clipped, lines(), wireframe(), translucent(), volume()]
+    renderer = scenes.renderer_of(ball(), *guests)
     scenes.look(renderer, (0.6, 1.2, 4))
     rt = vtkHybridRayTracingPass()
     renderer.SetPass(rt)
     render(renderer)
-    left = statistics(rt)["left_to_vtk"]
-    assert len(left) == 2
-    assert all(reason for reason in left.values())
+    report = statistics(rt)
+    assert [name.split("#")[1] for name in report["left_to_vtk"]] == ["1"]
+    assert [name.split("#")[1] for name in report["hosted"]] == ["2", "3", "4", "5"]
+    assert all({**report["left_to_vtk"], **report["hosted"]}.values())
+
+
+@pytest.mark.parametrize("kind", ["lines", "vertices", "shown vertices"])
+def test_lines_and_vertices_of_a_traced_surface_are_seen_on_it(kind, render):
+    """The surface is traced; VTK draws the rest where it draws it itself."""
+    source = scenes.vtkSphereSource()
+    source.SetThetaResolution(24)
+    source.SetPhiResolution(16)
+    source.Update()
+    mesh = source.GetOutput()
+    cells = vtkCellArray()
+    for i in range(mesh.GetNumberOfPolys()):
+        corners = mesh.GetCell(i).GetPointIds()
+        ids = [corners.GetId(k) for k in range(3)]
+        if kind == "lines":
+            cells.InsertNextCell(4, [*ids, ids[0]])
+        else:
+            cells.InsertNextCell(3, ids)
+    # Off the surface by more than two rasterisers' depths differ.
+    lifted = vtkPolyData()
+    lifted.DeepCopy(mesh)
+    points = lifted.GetPoints()
+    for i in range(points.GetNumberOfPoints()):
+        points.SetPoint(i, [1.01 * x for x in points.GetPoint(i)])
+    both = vtkAppendPolyData()
+    both.AddInputData(mesh)
+    if kind == "lines":
+        lifted.SetPolys(vtkCellArray())
+        lifted.SetLines(cells)
+        both.AddInputData(lifted)
+    elif kind == "vertices":
+        lifted.SetPolys(vtkCellArray())
+        lifted.SetVerts(cells)
+        both.AddInputData(lifted)
+    both.Update()
+    actor = scenes.actor_of(both, Color=(0.9, 0.7, 0.3), PointSize=4.0, LineWidth=2.0)
+    if kind == "shown vertices":
+        actor.GetProperty().VertexVisibilityOn()
+        actor.GetProperty().SetVertexColor(0.1, 0.1, 0.6)
+    renderer = scenes.renderer_of(actor)
+    renderer.AddLight(scenes.scene_light((1, 2, 3)))
+    scenes.look(renderer, (0.6, 1.2, 2.5))
+    rt, wrong = compare(renderer, render)
+    report = statistics(rt)
+    assert not report["left_to_vtk"] and not report["hosted"] and report["triangles"] > 500
+    print(f"{kind}: {100 * wrong:.3f} % of the pixels differ")
+    assert wrong < (0.02 if kind == "shown vertices" else OUTLINE_SHARE)
 
 
 def test_glass_actor_with_opacity_is_drawn_once(render):

@@ -4,7 +4,7 @@ light kind, in square and non-square windows; and no false shadow on surfaces th
 import numpy as np
 import pytest
 import scenes
-from vtkhybrid import buffer, vtkHybridRayTracingPass
+from vtkhybrid import buffer, statistics, vtkHybridRayTracingPass
 
 HALF = 0.5  # the caster: a square of half this side at this height, parallel to the floor
 HEIGHT = 1.0
@@ -90,6 +90,7 @@ def test_headlight_shadow_falls_away_from_the_viewer(render):
     headlight = scenes.vtkLight()
     headlight.SetLightTypeToHeadlight()
     renderer.AddLight(headlight)
+    rt.HeadlightShadowsOn()
     render(renderer, (400, 300))
     camera = renderer.GetActiveCamera()
     toward = -np.array(camera.GetDirectionOfProjection())
@@ -112,6 +113,7 @@ def test_light_at_the_eye_casts_no_visible_shadow(render):
     headlight.PositionalOn()
     headlight.SetConeAngle(80)
     renderer.AddLight(headlight)
+    rt.HeadlightShadowsOn()
     render(renderer)
     hit = buffer(rt, "prop") >= 0
     assert (buffer(rt, "shadow")[hit] == 1.0).all()
@@ -202,8 +204,39 @@ def test_positional_headlight(parallel, render):
     camera.SetParallelScale(2.5)
     renderer.ResetCameraClippingRange()
     rt = vtkHybridRayTracingPass()
+    rt.HeadlightShadowsOn()
     rt.SetBuffers(["shadow", "prop"])
     renderer.SetPass(rt)
     render(renderer)
     dark = (buffer(rt, "prop") == 0) & (buffer(rt, "shadow") == 0)
     assert (dark.sum() > 100) == parallel
+
+
+@pytest.mark.parametrize("mode", ["ShadowMaps", "Exact"])
+@pytest.mark.parametrize("lights", ["VTK's own", "a headlight and a lamp"])
+def test_headlights_cast_nothing_and_cost_nothing(mode, lights, render):
+    """As in VTK's own shadow pass; other lights of the scene cast as before."""
+    ball = scenes.vtkSphereSource()
+    ball.SetRadius(0.5)
+    ball.SetCenter(0, 1, 0)
+    renderer = scenes.renderer_of(scenes.actor_of(scenes.plane(FLOOR)), scenes.actor_of(ball))
+    if lights != "VTK's own":
+        headlight = scenes.vtkLight()
+        headlight.SetLightTypeToHeadlight()
+        renderer.AddLight(headlight)
+        renderer.AddLight(scenes.scene_light((0, 4, 0)))
+    scenes.look(renderer, (1.0, 5.0, 4.0))
+    rt = vtkHybridRayTracingPass()
+    getattr(rt, f"SetShadowModeTo{mode}")()
+    rt.SetBuffers(["shadow"])
+    renderer.SetPass(rt)
+    render(renderer)
+    share = buffer(rt, "shadow")
+    report = statistics(rt)
+    if lights == "VTK's own":
+        assert not (share < 1).any()
+        assert not report["stages"]["shadow_maps"]["ran"]
+        assert report["rays"]["shadow"]["traced"] == 0
+    else:
+        assert not (share[..., 0] < 1).any()
+        assert (share[..., 1] == 0).sum() > 100

@@ -25,8 +25,9 @@ Facts gatherFacts(const Snapshot& snapshot, const PixelBounds& bounds)
   {
     // From the eye itself no shadow is seen: whatever hides a point from the light hides it from
     // the camera too. The rays of a parallel projection do not start at one eye.
-    facts.lightCanCast.push_back(!(light.isHeadlight && light.kind == Light::Kind::Positional &&
-      !snapshot.camera.parallel));
+    const bool atEye = light.isHeadlight && light.kind == Light::Kind::Positional &&
+      !snapshot.camera.parallel;
+    facts.lightCanCast.push_back(light.castsShadows && !atEye);
   }
   return facts;
 }

@@ -32,7 +32,7 @@ struct Facts
   bool mirrorInView = false;          // same, for a part with reflectance
   bool glassInView = false;           // same, for a part of glass
   bool anyCaster = false;
-  std::vector<bool> lightCanCast;     // per light: false e.g. for a headlight placed at the eye
+  std::vector<bool> lightCanCast;     // per light: false where it casts none, or none that is seen
 };
 
 // Gathers the facts of a snapshot; `lightCanCast` included.

@@ -57,7 +57,7 @@ StageDecision planShadowMap(std::size_t light, const Facts& facts, const Setting
   }
   if (!facts.lightCanCast.at(light))
   {
-    return skip("the light is at the eye and its shadows are hidden");
+    return skip("the light casts no shadow that is seen");
   }
   const bool cached = light < caches.shadowMaps.size() && caches.shadowMaps[light];
   return decide(dependencies.shadowMap(light), cached, "the light has no map yet",

@@ -17,7 +17,7 @@ constexpr int kMostVeils = 64;
 
 bool isTranslucent(const Part& part)
 {
-  return part.visibleToRays && !part.castsShadow && !part.material.isGlass();
+  return part.visibleToRays && part.tintsShadow;
 }
 
 } // namespace
@@ -133,6 +133,10 @@ Lighting::Sight Lighting::sight(const SurfacePoint& point, const Light& light, R
   const bool positional = light.kind == Light::Kind::Positional;
   const glm::dvec3 toLight =
     positional ? light.position - this->Scene.origin - point.position : -light.direction;
+  if (!light.castsShadows)
+  {
+    return Sight::Free;
+  }
   if (!(glm::dot(point.geometricNormal, toLight) > 0.0))
   {
     return Sight::Blocked; // the viewer's side lies in the shadow of its own surface

@@ -135,6 +135,7 @@ TEST(Lighting, TranslucentSurfacesTintWhenAsked)
   floor.addLight(Light::Kind::Directional, { 0, 0, 5 });
   Part& veil = floor.scene.parts[1];
   veil.castsShadow = false;
+  veil.tintsShadow = true;
   veil.material.front.opacity = veil.material.back.opacity = 0.25f;
   veil.material.front.diffuseColor = veil.material.back.diffuseColor = { 0.5f, 1.0f, 1.0f };
   floor.structure.update(floor.scene);
@@ -146,9 +147,31 @@ TEST(Lighting, TranslucentSurfacesTintWhenAsked)
   scenes::addPart(floor.scene, floor.scene.parts[1].geometry,
     glm::translate(glm::dmat4(1.0), { 0, 0, 4 }));
   floor.scene.parts[2].castsShadow = false;
+  floor.scene.parts[2].tintsShadow = true;
   floor.scene.parts[2].material = floor.scene.parts[1].material;
   floor.structure.update(floor.scene);
   EXPECT_FLOAT_EQ(floor.brightnessAt(0.5), once * once);
+}
+
+// What casts none is no translucent surface: light passes it whole.
+TEST(Lighting, WhatCastsNoShadowTakesNoLight)
+{
+  Floor floor(3.0);
+  floor.addLight(Light::Kind::Directional, { 0, 0, 5 });
+  floor.settings.tintedShadows = true;
+  EXPECT_EQ(floor.brightnessAt(0.5), 0.0f);
+  floor.scene.parts[1].castsShadow = false;
+  floor.structure.update(floor.scene);
+  EXPECT_EQ(floor.brightnessAt(0.5), 1.0f);
+}
+
+// Nothing is asked of a light that casts no shadows, not even which side a surface turns to it.
+TEST(Lighting, LightsThatCastNoShadowsNeedNoRays)
+{
+  Floor floor(3.0);
+  floor.addLight(Light::Kind::Directional, { 0, 0, 5 });
+  floor.scene.lights[0].castsShadows = false;
+  EXPECT_EQ(floor.brightnessAt(0.5), 1.0f);
 }
 
 TEST(Lighting, SpotsLightTheirCone)

@@ -114,7 +114,6 @@ inline Part& addPart(Snapshot& snapshot, std::shared_ptr<const Geometry> geometr
 {
   Part part;
   part.key = snapshot.parts.size() + 1;
-  part.name = "part " + std::to_string(part.key);
   part.geometry = std::move(geometry);
   part.localToWorld = localToWorld;
   part.firstTriangle = snapshot.triangleCount;

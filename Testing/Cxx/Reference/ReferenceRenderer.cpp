@@ -378,6 +378,10 @@ glm::dvec3 Renderer::lights(const Point& point, const shading64::HrtSurface& col
 // The share of a light that nothing holds back on its way to a point.
 glm::dvec3 Renderer::arriving(const Point& point, const Light& light, Notes& notes) const
 {
+  if (!light.castsShadows)
+  {
+    return glm::dvec3(1.0);
+  }
   SoupRay ray;
   ray.origin = point.position;
   ray.leaves = point.triangle->id;
@@ -422,7 +426,7 @@ glm::dvec3 Renderer::arriving(const Point& point, const Light& light, Notes& not
       ray,
       [this](std::size_t p, bool) {
         const Part& part = this->Scene.parts[p];
-        return part.visibleToRays && !part.castsShadow && !part.material.isGlass();
+        return part.visibleToRays && part.tintsShadow;
       },
       [&](const SoupHit& hit) {
         const Point veil = this->pointAt(hit, ray.direction);

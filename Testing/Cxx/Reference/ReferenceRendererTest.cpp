@@ -62,6 +62,7 @@ Snapshot lively()
   veil.material.front.opacity = 0.4f;
   veil.visibleToCamera = false;
   veil.castsShadow = false;
+  veil.tintsShadow = true;
   for (Part& part : s.parts)
   {
     part.material.back = part.material.front;

@@ -1,30 +1,19 @@
 // Who draws an actor: the tracer or VTK, with the reason, and what rays and lights see of it.
 #include "SceneTest.h"
 
-#include "vtkDataSetMapper.h"
+#include "vtkCellData.h"
 #include "vtkDoubleArray.h"
-#include "vtkGlyph3DMapper.h"
 #include "vtkHybridMaterial.h"
 #include "vtkImageData.h"
 #include "vtkLookupTable.h"
 #include "vtkMatrix4x4.h"
-#include "vtkMultiBlockDataSet.h"
 #include "vtkPlane.h"
 #include "vtkPointData.h"
 #include "vtkPointGaussianMapper.h"
 #include "vtkProperty.h"
 #include "vtkShaderProperty.h"
 #include "vtkTexture.h"
-#include "vtkVersion.h"
-
-// The mapper that draws blocks was a class of its own before VTK 9.3, which deprecates it.
-#if VTK_VERSION_NUMBER < VTK_VERSION_CHECK(9, 3, 0)
-#include "vtkCompositePolyDataMapper2.h"
-using BlocksMapper = vtkCompositePolyDataMapper2;
-#else
-#include "vtkCompositePolyDataMapper.h"
-using BlocksMapper = vtkCompositePolyDataMapper;
-#endif
+#include "vtkVolume.h"
 
 namespace
 {
@@ -138,13 +127,10 @@ TEST_F(Classification, Textures)
   this->expectLeftButSeen("textured", true);
 }
 
-TEST_F(Classification, EdgesAndVertices)
+TEST_F(Classification, Edges)
 {
   this->property->EdgeVisibilityOn();
   this->expectLeftButSeen("edges", true);
-  this->property->EdgeVisibilityOff();
-  this->property->VertexVisibilityOn();
-  this->expectLeftButSeen("vertices", true);
 }
 
 TEST_F(Classification, PhysicallyBased)
@@ -162,13 +148,46 @@ TEST_F(Classification, ShaderReplacements)
   this->expectTraced();
 }
 
-TEST_F(Classification, VertsAndLines)
+// The surface is traced, and VTK draws the rest over it.
+TEST_F(Classification, VertsLinesAndVerticesAreHosted)
 {
+  this->expectTraced();
+  EXPECT_TRUE(this->scene->GetHostedActors().empty());
   this->mesh->SetVerts(makeCells({ { 0 } }));
-  this->expectLeftButSeen("vertex or line", true);
+  this->expectTraced();
+  EXPECT_EQ(this->scene->GetHostedActors().size(), 1u);
   this->mesh->SetVerts(nullptr);
   this->mesh->SetLines(makeCells({ { 0, 1 } }));
-  this->expectLeftButSeen("vertex or line", true);
+  this->property->VertexVisibilityOn();
+  this->expectTraced();
+  EXPECT_EQ(this->scene->GetHostedActors().size(), 2u);
+  // Where VTK draws the actor itself nothing is drawn twice.
+  this->property->SetOpacity(0.5);
+  this->update();
+  EXPECT_TRUE(this->scene->GetHostedActors().empty());
+}
+
+TEST_F(Classification, HostedCellsAreThoseOfTheData)
+{
+  vtkNew<vtkDoubleArray> scalars;
+  scalars->SetName("cells");
+  for (double v : { 7.0, 1.0, 2.0 })
+  {
+    scalars->InsertNextValue(v);
+  }
+  this->mesh->GetCellData()->SetScalars(scalars);
+  this->mesh->SetLines(makeCells({ { 0, 2, 3 } }));
+  this->actor->SetPosition(1, 2, 3);
+  this->expectTraced();
+  const std::vector<vtkActor*> hosted = this->scene->GetHostedActors();
+  ASSERT_EQ(hosted.size(), 1u);
+  auto* shown = vtkPolyData::SafeDownCast(hosted[0]->GetMapper()->GetInput());
+  EXPECT_EQ(shown->GetNumberOfCells(), 1);
+  EXPECT_EQ(shown->GetNumberOfPolys(), 0);
+  EXPECT_EQ(shown->GetCellData()->GetScalars()->GetComponent(0, 0), 7.0);
+  EXPECT_EQ(hosted[0]->GetMatrix()->GetElement(2, 3), 3.0);
+  this->update();
+  EXPECT_EQ(this->scene->GetHostedActors(), hosted) << "nothing has changed";
 }
 
 TEST_F(Classification, LinesAloneAreNoEmptyPart)
@@ -176,6 +195,59 @@ TEST_F(Classification, LinesAloneAreNoEmptyPart)
   this->mesh->SetPolys(nullptr);
   this->mesh->SetLines(makeCells({ { 0, 1 } }));
   this->expectLeftAndUnseen("vertex or line");
+  EXPECT_TRUE(this->scene->IsHosted(this->actor));
+}
+
+TEST_F(Classification, WhatIsVTKsByNatureIsHosted)
+{
+  for (int representation : { VTK_POINTS, VTK_WIREFRAME })
+  {
+    this->property->SetRepresentation(representation);
+    this->update();
+    EXPECT_TRUE(this->scene->IsHosted(this->actor));
+  }
+  this->property->SetRepresentationToSurface();
+  this->property->SetOpacity(0.5);
+  this->update();
+  EXPECT_TRUE(this->scene->IsHosted(this->actor));
+  this->property->SetOpacity(1.0);
+  vtkNew<vtkPlane> plane;
+  this->mapper->AddClippingPlane(plane);
+  this->update();
+  EXPECT_FALSE(this->scene->IsHosted(this->actor)) << "a surface";
+  vtkNew<vtkVolume> volume;
+  this->renderer->AddVolume(volume);
+  this->update();
+  EXPECT_TRUE(this->scene->IsHosted(volume));
+  EXPECT_STREQ(this->scene->GetReasonLeftToVTK(volume), "a volume");
+}
+
+TEST_F(Classification, AMirrorThatVTKDrawsIsSpokenOfOnce)
+{
+  vtkHybridMaterial::SetReflectance(this->actor, 0.5);
+  this->expectTraced();
+  this->property->SetRepresentationToWireframe();
+  for (int frame = 0; frame < 3; ++frame)
+  {
+    this->update();
+  }
+  ASSERT_EQ(this->messages.warnings.size(), 1u);
+  EXPECT_NE(this->messages.warnings[0].find(addressOf(this->actor)), std::string::npos);
+  EXPECT_NE(this->messages.warnings[0].find("a mirror"), std::string::npos);
+  EXPECT_NE(this->messages.warnings[0].find("wireframe"), std::string::npos);
+}
+
+TEST_F(Classification, CastingShadowsCanBeSwitchedOff)
+{
+  vtkHybridMaterial::SetCastsShadow(this->actor, false);
+  const hrt::Snapshot& s = this->update();
+  EXPECT_FALSE(s.parts.at(0).castsShadow);
+  EXPECT_FALSE(s.parts[0].tintsShadow);
+  EXPECT_TRUE(s.parts[0].visibleToRays);
+  this->property->SetOpacity(0.5);
+  EXPECT_FALSE(this->update().parts.at(0).tintsShadow);
+  vtkHybridMaterial::Clear(this->actor);
+  EXPECT_TRUE(this->update().parts.at(0).tintsShadow);
 }
 
 TEST_F(Classification, TranslucencyOfEveryOrigin)
@@ -229,33 +301,12 @@ TEST_F(Classification, ActorsWithoutMapperDrawThemselves)
   this->expectLeftAndUnseen("no mapper");
 }
 
-TEST_F(Classification, OtherMappersAndOtherData)
+TEST_F(Classification, OtherMappers)
 {
-  vtkNew<BlocksMapper> composite;
-  vtkNew<vtkMultiBlockDataSet> blocks;
-  blocks->SetBlock(0, this->mesh);
-  composite->SetInputDataObject(blocks);
-  vtkNew<vtkGlyph3DMapper> glyphs;
   vtkNew<vtkPointGaussianMapper> gaussians;
   gaussians->SetInputData(this->mesh);
-  for (vtkMapper* other : { static_cast<vtkMapper*>(composite), static_cast<vtkMapper*>(glyphs),
-         static_cast<vtkMapper*>(gaussians) })
-  {
-    this->actor->SetMapper(other);
-    this->expectLeftAndUnseen("something other");
-  }
-}
-
-TEST_F(Classification, DataSetMappersAreTracedWhenTheirInputIsPolyData)
-{
-  vtkNew<vtkDataSetMapper> any;
-  any->SetInputData(this->mesh);
-  this->actor->SetMapper(any);
-  this->expectTraced();
-  vtkNew<vtkImageData> image;
-  image->SetDimensions(2, 2, 2);
-  any->SetInputData(image);
-  this->expectLeftAndUnseen("not vtkPolyData");
+  this->actor->SetMapper(gaussians);
+  this->expectLeftAndUnseen("something other");
 }
 
 TEST_F(Classification, StreamedPieces)

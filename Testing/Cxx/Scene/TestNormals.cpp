@@ -115,9 +115,7 @@ TEST_F(Normals, ThatAreNotNumbersAreReplacedByTheFaces)
     EXPECT_EQ(g.normals[3 + i], this->expectedOfPoints()[3 + i]);
   }
   EXPECT_EQ(this->snapshot->refusals.total(), 0u);
-  ASSERT_EQ(this->messages.warnings.size(), 1u);
-  EXPECT_NE(this->messages.warnings[0].find("normals"), std::string::npos);
-  EXPECT_NE(this->messages.warnings[0].find(addressOf(this->actor)), std::string::npos);
+  EXPECT_TRUE(this->messages.warnings.empty()) << "VTK says nothing of them either";
 }
 
 TEST_F(Normals, OfLengthZeroAreReplacedByTheFaces)
@@ -125,7 +123,7 @@ TEST_F(Normals, OfLengthZeroAreReplacedByTheFaces)
   this->ofPoints.assign(4, glm::vec3(0));
   this->addPointNormals();
   EXPECT_EQ(this->onlyGeometry().normals, std::vector<glm::vec3>(6, glm::vec3(0, 0, 1)));
-  EXPECT_EQ(this->messages.warnings.size(), 1u);
+  EXPECT_TRUE(this->messages.warnings.empty());
 }
 
 } // anonymous namespace

@@ -102,7 +102,7 @@ TEST_F(Refusals, TrianglesWithoutArea)
 {
   auto broken = this->points;
   broken.insert(broken.end(), { { 0.5, 0.5, 0 }, { 0, 0, 0 } });
-  auto actor = this->addMesh(makeMesh(broken,
+  this->addMesh(makeMesh(broken,
     { { 0, 1, 1 },     // a point twice
       { 0, 1, 5 },     // two points in one place
       { 0, 4, 2 },     // three in a line
@@ -110,7 +110,7 @@ TEST_F(Refusals, TrianglesWithoutArea)
   EXPECT_EQ(this->onlyGeometry().cellIds, (std::vector<std::int64_t>{ 3 }));
   EXPECT_EQ(this->snapshot->refusals.degenerateTriangles, 3u);
   EXPECT_EQ(this->snapshot->refusals.total(), 3u);
-  this->expectOneWarning(actor, "3 triangles without area");
+  EXPECT_TRUE(this->messages.warnings.empty()) << "VTK draws nothing of them and says nothing";
 }
 
 TEST_F(Refusals, SliversHaveAnArea)
@@ -127,39 +127,38 @@ TEST_F(Refusals, AllKindsGiveOneMessageWithEveryCount)
     this->addMesh(makeMesh(broken, { { 0, 1, 2 }, { 0, 1, 9 }, { 0, 1, 3 }, { 0, 0, 1 } }));
   this->expectOneWarning(actor, "1 triangle with points that are not finite");
   EXPECT_NE(this->messages.warnings[0].find("1 triangle that name"), std::string::npos);
-  EXPECT_NE(this->messages.warnings[0].find("1 triangle without area"), std::string::npos);
+  EXPECT_EQ(this->messages.warnings[0].find("area"), std::string::npos);
   EXPECT_EQ(this->snapshot->refusals.total(), 3u);
   EXPECT_EQ(this->snapshot->triangleCount, 1u);
 }
 
 TEST_F(Refusals, AreToldAgainWhenTheDataChange)
 {
-  auto mesh = makeMesh(this->points, { { 0, 1, 2 }, { 0, 0, 1 } });
+  auto mesh = makeMesh(this->points, { { 0, 1, 2 }, { 0, 1, 8 } });
   this->addMesh(mesh);
   this->update();
   EXPECT_EQ(this->messages.warnings.size(), 1u);
   mesh->Modified(); // the same data once more
   this->update();
   EXPECT_EQ(this->messages.warnings.size(), 1u);
-  mesh->SetPolys(makeCells({ { 0, 1, 2 }, { 0, 0, 1 }, { 1, 1, 2 } }));
+  mesh->SetPolys(makeCells({ { 0, 1, 2 }, { 0, 1, 8 }, { 1, 2, 9 } }));
   this->update();
   EXPECT_EQ(this->messages.warnings.size(), 2u);
-  EXPECT_EQ(this->snapshot->refusals.degenerateTriangles, 2u);
+  EXPECT_EQ(this->snapshot->refusals.invalidIndices, 2u);
 }
 
 TEST_F(Refusals, OneMessageSpeaksOfEachPart)
 {
   auto good = this->addMesh(makeSquare());
-  auto bad = this->addMesh(makeMesh(this->points, { { 0, 1, 2 }, { 0, 0, 1 } }));
+  auto bad = this->addMesh(makeMesh(this->points, { { 0, 1, 2 }, { 0, 1, 7 } }));
   auto worse = this->addMesh(makeMesh(this->points, { { 0, 1, 2 }, { 0, 1, 8 }, { 0, 1, 9 } }));
-  this->expectOneWarning(bad, addressOf(bad) + "): refused 1 triangle without area. ");
+  this->expectOneWarning(bad, addressOf(bad) + "): refused 1 triangle that name points that do not exist. ");
   const std::string& text = this->messages.warnings[0];
   EXPECT_NE(text.find(addressOf(worse) + "): refused 2 triangles that name"), std::string::npos);
   EXPECT_EQ(text.find(addressOf(good)), std::string::npos);
   EXPECT_EQ(text.find("more"), std::string::npos);
   EXPECT_EQ(this->snapshot->parts.size(), 3u);
-  EXPECT_EQ(this->snapshot->refusals.degenerateTriangles, 1u);
-  EXPECT_EQ(this->snapshot->refusals.invalidIndices, 2u);
+  EXPECT_EQ(this->snapshot->refusals.invalidIndices, 3u);
 }
 
 TEST_F(Refusals, ManyBadPartsTakeOneLine)
@@ -167,7 +166,7 @@ TEST_F(Refusals, ManyBadPartsTakeOneLine)
   std::vector<vtkSmartPointer<vtkActor>> actors;
   for (int i = 0; i < 8; ++i)
   {
-    actors.push_back(this->addMesh(makeMesh(this->points, { { 0, 0, 1 } })));
+    actors.push_back(this->addMesh(makeMesh(this->points, { { 0, 1, 9 } })));
   }
   actors.push_back(this->addMesh(makeSquare()));
   actors.back()->SetScale(1, 1, 0);
@@ -181,7 +180,7 @@ TEST_F(Refusals, ManyBadPartsTakeOneLine)
   EXPECT_EQ(this->snapshot->refusals.singularMatrices, 1u);
 
   // What comes later is told by itself, although it is like what was told before.
-  auto late = this->addMesh(makeMesh(this->points, { { 1, 1, 2 } }));
+  auto late = this->addMesh(makeMesh(this->points, { { 1, 2, 9 } }));
   this->update();
   ASSERT_EQ(this->messages.warnings.size(), 2u);
   EXPECT_NE(this->messages.warnings[1].find(addressOf(late)), std::string::npos);
@@ -192,7 +191,8 @@ TEST_F(Refusals, PartsWithNothingLeftAreEmpty)
 {
   auto actor = this->addMesh(makeMesh(this->points, { { 0, 0, 1 } }));
   auto good = this->addMesh(makeSquare());
-  this->expectOneWarning(actor, "1 triangle without area");
+  this->update();
+  EXPECT_TRUE(this->messages.warnings.empty());
   ASSERT_EQ(this->snapshot->parts.size(), 1u);
   EXPECT_EQ(this->scene->GetProp(0), good.Get());
   EXPECT_EQ(this->snapshot->refusals.emptyParts, 1u);
@@ -239,6 +239,7 @@ TEST_F(Refusals, MatricesThatCannotBeUsed)
   {
     SCOPED_TRACE(z);
     this->renderer->RemoveAllViewProps();
+    this->update(); // the next actor may come to live at the last one's address
     this->messages.warnings.clear();
     auto actor = this->addMesh(makeSquare());
     auto good = this->addMesh(makeSquare());
@@ -273,6 +274,7 @@ TEST_F(Refusals, PartsThatTheirMatrixCarriesOutOfRange)
   {
     SCOPED_TRACE(by[3]);
     this->renderer->RemoveAllViewProps();
+    this->update(); // the next actor may come to live at the last one's address
     this->messages.errors.clear();
     auto far = this->addMesh(makeMesh({ { 0, 0, 0 }, { 1, 0, 0 }, { 0, 1, 1 } }, { { 0, 1, 2 } }));
     far->SetPosition(by[0], by[1], by[2]);

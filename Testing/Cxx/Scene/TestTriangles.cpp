@@ -114,6 +114,59 @@ TEST_F(Triangles, AConcavePolygonIsCoveredOnce)
   }
 }
 
+// A U as map makers write rings: the first corner once more at the end, by number or by place, either
+// way round, a corner twice, one in a line, a way there and back, corners a hair off the plane.
+TEST_F(Triangles, RingsAsMapMakersWriteThemAreCoveredOnce)
+{
+  const std::vector<glm::dvec3> u = { { -5, -5, 0 }, { 5, -5, 0 }, { 5, 5, 0 }, { 3, 5, 0 },
+    { 3, -3, 0 }, { -3, -3, 0 }, { -3, 5, 0 }, { -5, 5, 0 } };
+  const std::vector<vtkIdType> all = { 0, 1, 2, 3, 4, 5, 6, 7 };
+  struct Ring
+  {
+    const char* name;
+    std::vector<glm::dvec3> points;
+    std::vector<vtkIdType> ids;
+  };
+  std::vector<Ring> rings = { { "plain", u, all }, { "closed by number", u, all },
+    { "closed by place", u, all }, { "a corner twice", u, all }, { "a corner in line", u, all },
+    { "there and back", u, all }, { "there and back at the beginning", u, all },
+    { "there and back twice", u, all }, { "nearly plane", u, all } };
+  rings[1].ids.push_back(0);
+  rings[2].points.push_back(u[0]);
+  rings[2].ids.push_back(8);
+  rings[3].ids = { 0, 1, 2, 3, 4, 4, 5, 6, 7 };
+  rings[4].points.emplace_back(0, -5, 0);
+  rings[4].ids = { 0, 8, 1, 2, 3, 4, 5, 6, 7 };
+  rings[5].points.emplace_back(8, -5, 0);
+  rings[5].ids = { 0, 1, 8, 1, 2, 3, 4, 5, 6, 7 };
+  rings[6].points.emplace_back(-8, -5, 0);
+  rings[6].ids = { 8, 0, 1, 2, 3, 4, 5, 6, 7, 0 };
+  rings[7].points.insert(rings[7].points.end(), { { 7, -5, 0 }, { 7, -8, 0 } });
+  rings[7].ids = { 0, 1, 8, 9, 8, 1, 2, 3, 4, 5, 6, 7 };
+  for (std::size_t i = 0; i < u.size(); ++i)
+  {
+    rings[8].points[i].z = i % 2 ? 0.005 : 0.0;
+  }
+  for (const Ring& ring : rings)
+  {
+    for (bool reversed : { false, true })
+    {
+      SCOPED_TRACE(std::string(ring.name) + (reversed ? ", reversed" : ""));
+      auto cell = ring.ids;
+      if (reversed)
+      {
+        std::reverse(cell.begin(), cell.end());
+      }
+      this->renderer->RemoveAllViewProps();
+      this->addMesh(makeMesh(ring.points, { cell }));
+      const hrt::Geometry& g = this->onlyGeometry();
+      // 10 x 10 less 6 x 8; the corners off the plane add a few millionths.
+      EXPECT_NEAR(totalArea(g), 52.0, 1e-3);
+      EXPECT_TRUE(this->messages.warnings.empty());
+    }
+  }
+}
+
 // A bow tie cannot be triangulated; its fan is what VTK's mapper draws.
 TEST_F(Triangles, ASelfCrossingPolygonFallsBackToTheFan)
 {
