@@ -84,11 +84,24 @@ ActorPath readPath(vtkAssemblyPath* source)
 }
 
 //------------------------------------------------------------------------------
-// Other props draw themselves by rules of their own, also where they offer paths.
-bool hasActorPaths(vtkProp* prop)
+// An actor of the renderer itself, which most are: without the lists that a traversal makes.
+ActorPath readActor(vtkActor* actor)
 {
-  return vtkActor::SafeDownCast(prop) || vtkAssembly::SafeDownCast(prop) ||
-    vtkPropAssembly::SafeDownCast(prop);
+  ActorPath path;
+  path.props = { actor };
+  path.actor = actor;
+  path.visible = actor->GetVisibility();
+  path.key = keyOf(path.props);
+  actor->ComputeMatrix();
+  path.localToWorld = toMatrix(actor->GetMatrix());
+  return path;
+}
+
+//------------------------------------------------------------------------------
+// Other props draw themselves by rules of their own, also where they offer paths.
+bool isAssembly(vtkProp* prop)
+{
+  return vtkAssembly::SafeDownCast(prop) || vtkPropAssembly::SafeDownCast(prop);
 }
 
 //------------------------------------------------------------------------------
@@ -114,22 +127,26 @@ std::vector<ActorPath> actorPaths(vtkRenderer* renderer)
 {
   std::vector<ActorPath> paths;
   vtkPropCollection* props = renderer->GetViewProps();
+  paths.reserve(static_cast<std::size_t>(props->GetNumberOfItems()));
   vtkCollectionSimpleIterator it;
   props->InitTraversal(it);
   while (vtkProp* prop = props->GetNextProp(it))
   {
-    if (!hasActorPaths(prop))
+    if (auto* const actor = vtkActor::SafeDownCast(prop))
     {
-      if (vtkProp3D::SafeDownCast(prop))
-      {
-        paths.push_back(otherProp(prop));
-      }
-      continue;
+      paths.push_back(readActor(actor));
     }
-    prop->InitPathTraversal();
-    while (vtkAssemblyPath* source = prop->GetNextPath())
+    else if (isAssembly(prop))
     {
-      paths.push_back(readPath(source));
+      prop->InitPathTraversal();
+      while (vtkAssemblyPath* source = prop->GetNextPath())
+      {
+        paths.push_back(readPath(source));
+      }
+    }
+    else if (vtkProp3D::SafeDownCast(prop))
+    {
+      paths.push_back(otherProp(prop));
     }
   }
   return paths;

@@ -122,10 +122,16 @@ SceneReader::PathMemory& SceneReader::memoryOf(const ActorPath& path)
 }
 
 //------------------------------------------------------------------------------
-// What the path showed last stays known although it is not drawn in this frame.
-void SceneReader::keep(PathMemory& memory)
+// What the path showed last stays known although it is not traced in this frame.
+void SceneReader::keep(const ActorPath& path)
 {
-  for (const std::uint64_t piece : memory.pieces)
+  const auto memory = this->Paths.find(path.key);
+  if (memory == this->Paths.end())
+  {
+    return;
+  }
+  memory->second.used = true;
+  for (const std::uint64_t piece : memory->second.pieces)
   {
     this->Geometries.keep(piece);
   }
@@ -209,7 +215,7 @@ LeftToVTK SceneReader::addPieces(const ActorPath& path, const MapperReading& rea
   LeftToVTK left = classifySurface(path.actor, path.actor->GetMapper(), isGlass);
   if (!seenByRays(left))
   {
-    this->keep(memory);
+    this->keep(path);
     return left;
   }
   Part part;
@@ -217,7 +223,7 @@ LeftToVTK SceneReader::addPieces(const ActorPath& path, const MapperReading& rea
   const LeftToVTK byMatrix = this->checkMatrix(path, snapshot, part.localToWorld);
   if (byMatrix != LeftToVTK::No)
   {
-    this->keep(memory);
+    this->keep(path);
     return byMatrix;
   }
   part.visibleToCamera = left == LeftToVTK::No;
@@ -266,12 +272,6 @@ LeftToVTK SceneReader::addPieces(const ActorPath& path, const MapperReading& rea
 //------------------------------------------------------------------------------
 LeftToVTK SceneReader::addActor(const ActorPath& path, PathMemory& memory, Draft& draft)
 {
-  const LeftToVTK left = classifyActor(path.actor);
-  if (left != LeftToVTK::No)
-  {
-    this->keep(memory);
-    return left;
-  }
   vtkMapper* const mapper = path.actor->GetMapper();
   if (memory.mapper != mapper)
   {
@@ -304,24 +304,22 @@ void SceneReader::addPath(const ActorPath& path, Draft& draft)
   {
     this->Keys.restore(path);
   }
-  else if (path.visible)
+  if (!path.visible)
   {
-    draft.judge(path, classifyProp(path.props.back()));
+    this->keep(path);
     return;
+  }
+  LeftToVTK left = path.actor ? classifyActor(path.actor) : classifyProp(path.props.back());
+  if (left == LeftToVTK::No)
+  {
+    left = this->addActor(path, this->memoryOf(path), draft);
   }
   else
   {
-    return;
+    this->keep(path);
   }
-  PathMemory& memory = this->memoryOf(path);
-  if (!path.visible)
-  {
-    this->keep(memory);
-    return;
-  }
-  const LeftToVTK left = this->addActor(path, memory, draft);
   draft.judge(path, left);
-  if (left != LeftToVTK::No)
+  if (left != LeftToVTK::No && path.actor)
   {
     this->tellOfOptics(path, left);
   }
@@ -362,7 +360,9 @@ Frame SceneReader::read(
   Snapshot& snapshot = *draft.frame.snapshot;
   this->Warnings.abandonUpdate(); // one that an exception has ended
   this->Errors.abandonUpdate();
-  for (const ActorPath& path : actorPaths(renderer))
+  const std::vector<ActorPath> paths = actorPaths(renderer);
+  draft.frame.verdicts.reserve(paths.size());
+  for (const ActorPath& path : paths)
   {
     this->addPath(path, draft);
   }

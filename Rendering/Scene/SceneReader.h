@@ -89,7 +89,7 @@ private:
     bool used = false;
   };
   PathMemory& memoryOf(const ActorPath& path);
-  void keep(PathMemory& memory);
+  void keep(const ActorPath& path);
 
   LeftToVTK addActor(const ActorPath& path, PathMemory& memory, Draft& draft);
   LeftToVTK addPieces(const ActorPath& path, const MapperReading& reading, const RayKeys& keys,
