@@ -90,3 +90,27 @@ def test_vtk_errors_are_caught(vtk_messages):
 
 def test_data_root_is_a_folder(data_root):
     assert data_root.is_dir()
+
+
+def test_a_setting_spelt_as_an_attribute_is_refused():
+    rt = vtkhybrid.vtkHybridRayTracingPass()
+    with pytest.raises(AttributeError, match=r"maximum_depth.*SetMaximumDepth"):
+        rt.maximum_depth = 5
+    with pytest.raises(AttributeError, match="nonsense"):
+        rt.nonsense = 1
+    assert rt.GetMaximumDepth() == 3
+
+
+def test_the_renderer_gives_back_the_very_pass():
+    renderer = vtkRenderer()
+    rt = vtkhybrid.vtkHybridRayTracingPass()
+    renderer.SetPass(rt)
+    assert renderer.GetPass() is rt
+    assert rt.IsA("vtkHybridRayTracingPass") and rt.GetClassName() == "vtkHybridRayTracingPass"
+
+
+@pytest.mark.expects_vtk_messages('got the string "depth"')
+def test_a_string_is_no_list_of_buffers():
+    rt = vtkhybrid.vtkHybridRayTracingPass()
+    rt.SetBuffers("depth")
+    assert len(rt.GetBuffers()) == 0

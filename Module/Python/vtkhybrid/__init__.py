@@ -23,9 +23,9 @@ for _name in ("vtkmodules.vtkInteractionStyle", "vtkmodules.vtkRenderingFreeType
         _importlib.import_module(_name)
 del _name
 
+from . import vtkHybridRenderingOpenGL2 as _opengl2
 from ._version import __version__
 from .vtkHybridIOBART import vtkHybridBARTImporter
-from .vtkHybridRenderingOpenGL2 import vtkHybridRayTracingPass
 from .vtkHybridRenderingScene import vtkHybridMaterial
 
 __all__ = [
@@ -37,6 +37,20 @@ __all__ = [
     "vtkHybridMaterial",
     "vtkHybridRayTracingPass",
 ]
+
+
+class vtkHybridRayTracingPass(_opengl2.vtkHybridRayTracingPass):
+    __doc__ = _opengl2.vtkHybridRayTracingPass.__doc__
+
+    def __setattr__(self, name, value):
+        # VTK's wrappers take any attribute without a word; a setting that is spelt like one would
+        # do nothing. What the class has, as newer releases have properties, is set as usual.
+        if hasattr(type(self), name) or name.startswith("_"):
+            super().__setattr__(name, value)
+            return
+        setter = "Set" + "".join(part[:1].upper() + part[1:] for part in name.split("_"))
+        hint = f"; call {setter}(...)" if hasattr(type(self), setter) else ""
+        raise AttributeError(f"vtkHybridRayTracingPass has no attribute {name!r}{hint}")
 
 
 def statistics(rt):
