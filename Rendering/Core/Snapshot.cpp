@@ -89,9 +89,14 @@ bool sameColors(const Light& a, const Light& b)
   return a.color == b.color && a.attenuation == b.attenuation && a.exponent == b.exponent;
 }
 
+bool sameCopies(const Part& a, const Part& b)
+{
+  return (a.copies ? a.copies->version : 0) == (b.copies ? b.copies->version : 0);
+}
+
 bool sameTriangles(const Part& a, const Part& b)
 {
-  return a.key == b.key && a.geometry->version == b.geometry->version &&
+  return a.key == b.key && a.geometry->version == b.geometry->version && sameCopies(a, b) &&
     a.firstTriangle == b.firstTriangle && a.visibleToCamera == b.visibleToCamera &&
     a.visibleToRays == b.visibleToRays && a.castsShadow == b.castsShadow &&
     a.tintsShadow == b.tintsShadow;
@@ -229,26 +234,55 @@ Changes compareSnapshots(const Snapshot* before, const Snapshot& now)
   return changes;
 }
 
+namespace
+{
+
+// Includes the box as the matrix places it.
+void includeBox(const glm::dmat4& matrix, const glm::dvec3& from, const glm::dvec3& to,
+  glm::dvec3& lower, glm::dvec3& upper)
+{
+  for (int corner = 0; corner < 8; ++corner)
+  {
+    const glm::dvec4 local((corner & 1) ? to.x : from.x, (corner & 2) ? to.y : from.y,
+      (corner & 4) ? to.z : from.z, 1.0);
+    const glm::dvec3 placed(matrix * local);
+    lower = glm::min(lower, placed);
+    upper = glm::max(upper, placed);
+  }
+}
+
+const glm::dvec3 kNowhere(std::numeric_limits<double>::infinity());
+
+} // namespace
+
 void worldBounds(const Part& part, glm::dvec3& lower, glm::dvec3& upper)
 {
   const Geometry& geometry = *part.geometry;
-  if (geometry.triangleCount() == 0)
+  if (part.triangleCount() == 0)
   {
     lower = glm::dvec3(0.0);
     upper = glm::dvec3(-1.0);
     return;
   }
-  const glm::dmat4 toWorld = part.positionsToWorld();
-  lower = glm::dvec3(std::numeric_limits<double>::infinity());
-  upper = -lower;
-  for (int corner = 0; corner < 8; ++corner)
+  lower = kNowhere;
+  upper = -kNowhere;
+  if (part.copies)
   {
-    const glm::dvec3 local((corner & 1) ? geometry.boundsMax.x : geometry.boundsMin.x,
-      (corner & 2) ? geometry.boundsMax.y : geometry.boundsMin.y,
-      (corner & 4) ? geometry.boundsMax.z : geometry.boundsMin.z);
-    const glm::dvec3 world(toWorld * glm::dvec4(local, 1.0));
-    lower = glm::min(lower, world);
-    upper = glm::max(upper, world);
+    includeBox(part.localToWorld, part.copies->boundsMin, part.copies->boundsMax, lower, upper);
+    return;
+  }
+  includeBox(part.positionsToWorld(), glm::dvec3(geometry.boundsMin),
+    glm::dvec3(geometry.boundsMax), lower, upper);
+}
+
+void boundCopies(const Geometry& geometry, Copies& copies)
+{
+  copies.boundsMin = kNowhere;
+  copies.boundsMax = -kNowhere;
+  for (std::size_t i = 0; i < copies.count(); ++i)
+  {
+    includeBox(copies.matrix(i), geometry.origin + glm::dvec3(geometry.boundsMin),
+      geometry.origin + glm::dvec3(geometry.boundsMax), copies.boundsMin, copies.boundsMax);
   }
 }
 

@@ -7,6 +7,8 @@
 // single precision: matrices are composed in double and only the product is rounded.
 #pragma once
 
+#include "Rendering/Core/Copies.h"
+
 #include <glm/glm.hpp>
 
 #include <array>
@@ -130,6 +132,7 @@ struct Part
   std::uint64_t key = 0;                    // the same for the same path and block in later frames
   Source source;
   std::shared_ptr<const Geometry> geometry; // never null
+  std::shared_ptr<const Copies> copies;     // null: the geometry is there once
   glm::dmat4 localToWorld{ 1.0 };
   Material material;
   TriangleId firstTriangle = 0;             // id of its first triangle in the snapshot
@@ -139,11 +142,31 @@ struct Part
   bool castsShadow = true;     // and lets no light through
   bool tintsShadow = false;    // casts one, but is translucent: takes its share of the light
 
-  // Maps Geometry::positions to the world: localToWorld with the geometry's origin folded in.
-  glm::dmat4 positionsToWorld() const
+  std::size_t copyCount() const { return copies ? copies->count() : 1; }
+  // Of all copies together.
+  std::uint64_t triangleCount() const
   {
-    glm::dmat4 m = localToWorld;
-    m[3] = localToWorld * glm::dvec4(geometry->origin, 1.0);
+    return std::uint64_t(geometry->triangleCount()) * this->copyCount();
+  }
+  // Of a triangle's number in the snapshot, which must be one of the part's: the copy, and the number
+  // in the geometry.
+  std::size_t copyOf(TriangleId id) const
+  {
+    return copies ? (id - firstTriangle) / geometry->triangleCount() : 0;
+  }
+  std::size_t indexOf(TriangleId id) const
+  {
+    const std::size_t index = id - firstTriangle;
+    return copies ? index % geometry->triangleCount() : index;
+  }
+
+  // Maps Geometry::positions to the world: localToWorld, after the copy's matrix where there are
+  // copies, with the geometry's origin folded in.
+  glm::dmat4 positionsToWorld(std::size_t copy = 0) const
+  {
+    const glm::dmat4 place = copies ? localToWorld * copies->matrix(copy) : localToWorld;
+    glm::dmat4 m = place;
+    m[3] = place * glm::dvec4(geometry->origin, 1.0);
     return m;
   }
 };
@@ -288,5 +311,8 @@ Changes compareSnapshots(const Snapshot* before, const Snapshot& now);
 
 // World box of one part, from its local box; conservative (outward by nothing but rounding).
 void worldBounds(const Part& part, glm::dvec3& lower, glm::dvec3& upper);
+
+// Sets the bounds of the copies of a geometry.
+void boundCopies(const Geometry& geometry, Copies& copies);
 
 } // namespace hrt

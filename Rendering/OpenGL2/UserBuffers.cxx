@@ -55,10 +55,16 @@ const std::map<std::string, Recipe>& recipes()
       { 1, true,
         [](const Snapshot& s, const Pixel& p, double* out) {
           const Part& part = s.parts[p.part];
-          out[0] = double(part.geometry->cellIds[p.triangle - part.firstTriangle]);
+          out[0] = double(part.geometry->cellIds[part.indexOf(p.triangle)]);
         } } },
     { "prop",
       { 1, true, [](const Snapshot&, const Pixel& p, double* out) { out[0] = double(p.part); } } },
+    { "glyph",
+      { 1, true,
+        [](const Snapshot& s, const Pixel& p, double* out) {
+          const Part& part = s.parts[p.part];
+          out[0] = part.copies ? double(part.copies->id(part.copyOf(p.triangle))) : -1.0;
+        } } },
     { "barycentric",
       { 2, false,
         [](const Snapshot&, const Pixel& p, double* out) {
@@ -122,7 +128,7 @@ vtkSmartPointer<vtkDataArray> makeArray(const std::vector<double>& values, int c
 const std::vector<std::string>& UserBuffers::knownNames()
 {
   static const std::vector<std::string> names = { "triangle", "cell", "prop", "block",
-    "barycentric", "position", "normal", "depth", "shadow" };
+    "glyph", "barycentric", "position", "normal", "depth", "shadow" };
   return names;
 }
 

@@ -75,6 +75,8 @@ const char* describe(LeftToVTK reason)
       return "the mapper's input is of a kind that has no surface";
     case LeftToVTK::SubPieces:
       return "the mapper streams its input in pieces";
+    case LeftToVTK::GlyphLines:
+      return "glyphs with vertex or line cells beside their surface";
     case LeftToVTK::ClippingPlanes:
       return "clipped by the mapper's planes";
     case LeftToVTK::ProjectiveMatrix:

@@ -32,6 +32,7 @@ enum class LeftToVTK
   OtherMapper,
   OtherData,
   SubPieces,
+  GlyphLines,
   ClippingPlanes,
   ProjectiveMatrix,
   SingularMatrix,

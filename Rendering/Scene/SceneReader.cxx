@@ -171,7 +171,7 @@ LeftToVTK SceneReader::addPart(const ActorPath& path, const Part& part, Draft& d
     return LeftToVTK::OutOfRange;
   }
   Part numbered = part;
-  if (!draft.numbers.take(part.geometry->triangleCount(), numbered.firstTriangle))
+  if (!draft.numbers.take(part.triangleCount(), numbered.firstTriangle))
   {
     this->Errors.addState(path.key,
       nameOf(path.actor) +
@@ -207,6 +207,24 @@ ExtractionPointer SceneReader::extract(
 }
 
 //------------------------------------------------------------------------------
+// In place for the first mesh, so that a million copies are there once; for another, which has taken the
+// mesh's place or shares the copies, aside: the tracer may still read them.
+const std::shared_ptr<const Copies>& SceneReader::BoundedCopies::of(
+  const Geometry& mesh, const std::shared_ptr<Copies>& given)
+{
+  if (!this->bounded || this->geometry != mesh.version || this->copies != given->version)
+  {
+    const bool unbounded = given->boundsMin.x > given->boundsMax.x;
+    const std::shared_ptr<Copies> own = unbounded ? given : std::make_shared<Copies>(*given);
+    boundCopies(mesh, *own);
+    this->bounded = own;
+    this->geometry = mesh.version;
+    this->copies = given->version;
+  }
+  return this->bounded;
+}
+
+//------------------------------------------------------------------------------
 LeftToVTK SceneReader::addPieces(const ActorPath& path, const MapperReading& reading,
   const RayKeys& keys, PathMemory& memory, Draft& draft)
 {
@@ -237,7 +255,7 @@ LeftToVTK SceneReader::addPieces(const ActorPath& path, const MapperReading& rea
   {
     part.key = keyOfPiece(path.key, piece.key);
     memory.pieces.push_back(part.key);
-    if (HostedCells::neededFor(piece, path.actor))
+    if (!piece.copies && HostedCells::neededFor(piece, path.actor))
     {
       ++otherCells;
       for (vtkActor* shown :
@@ -254,6 +272,8 @@ LeftToVTK SceneReader::addPieces(const ActorPath& path, const MapperReading& rea
       continue;
     }
     ++surfaces;
+    part.copies = piece.copies ? memory.copies[part.key].of(*part.geometry, piece.copies)
+                               : nullptr;
     part.source.block = piece.block;
     part.material =
       extractMaterial(path.actor, keys, part.geometry->colorSource, piece.overrides);
@@ -278,6 +298,7 @@ LeftToVTK SceneReader::addActor(const ActorPath& path, PathMemory& memory, Draft
     memory.mapper = mapper;
     memory.adapter = makeAdapter(mapper);
     memory.hosted.clear();
+    memory.copies.clear();
   }
   if (!memory.adapter)
   {

@@ -78,6 +78,16 @@ public:
 private:
   struct Draft; // a frame that is being put together
 
+  // A piece's copies, with the bounds that the geometry gives them.
+  struct BoundedCopies
+  {
+    std::uint64_t geometry = 0, copies = 0; // versions
+    std::shared_ptr<const Copies> bounded;
+
+    const std::shared_ptr<const Copies>& of(
+      const Geometry& mesh, const std::shared_ptr<Copies>& given);
+  };
+
   // What is kept of a path from frame to frame.
   struct PathMemory
   {
@@ -86,6 +96,7 @@ private:
     std::unique_ptr<MapperAdapter> adapter; // null: no kind reads the mapper
     std::vector<std::uint64_t> pieces;      // keys of the last frame's
     std::unordered_map<std::uint64_t, HostedCells> hosted; // by piece
+    std::unordered_map<std::uint64_t, BoundedCopies> copies; // likewise
     bool used = false;
   };
   PathMemory& memoryOf(const ActorPath& path);

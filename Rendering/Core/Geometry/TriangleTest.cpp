@@ -42,9 +42,10 @@ double differenceOfProducts(double a, double b, double c, double d)
   return std::fma(a, b, -product) + rounding;
 }
 
-glm::dmat4 positionsToScene(const Part& part, const glm::dvec3& sceneOrigin)
+glm::dmat4 positionsToScene(
+  const Part& part, const glm::dvec3& sceneOrigin, std::size_t copy)
 {
-  glm::dmat4 m = part.positionsToWorld();
+  glm::dmat4 m = part.positionsToWorld(copy);
   m[3] -= glm::dvec4(sceneOrigin, 0.0);
   return m;
 }

@@ -52,7 +52,8 @@ struct TriangleHit
 };
 
 // Part::positionsToWorld followed by the step to the snapshot's origin.
-glm::dmat4 positionsToScene(const Part& part, const glm::dvec3& sceneOrigin);
+glm::dmat4 positionsToScene(
+  const Part& part, const glm::dvec3& sceneOrigin, std::size_t copy = 0);
 
 // Corners of a geometry's triangle. Equal positions give equal corners, bit by bit: what holds
 // together in the mesh holds together here.

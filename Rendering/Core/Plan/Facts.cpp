@@ -19,7 +19,7 @@ Facts gatherFacts(const Snapshot& snapshot, const PixelBounds& bounds)
     facts.mirrorInView = facts.mirrorInView || (seen && part.material.isMirror());
     facts.glassInView = facts.glassInView || (seen && part.material.isGlass());
     facts.anyCaster =
-      facts.anyCaster || (part.castsShadow && part.geometry->triangleCount() > 0);
+      facts.anyCaster || (part.castsShadow && part.triangleCount() > 0);
   }
   for (const Light& light : snapshot.lights)
   {

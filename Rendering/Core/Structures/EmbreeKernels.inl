@@ -321,17 +321,16 @@ struct Triangles
 };
 
 template <bool kAny>
-HRT_LANES void searchEntered(
-  const TopLevel& scene, const Placed& part, const TraversalRay& ray, Search& search)
+HRT_LANES void searchEntered(const Placed& part, const TraversalRay& ray, Search& search)
 {
   const Hierarchy& hierarchy = *part.hierarchy;
-  Triangles<kAny> triangles(hierarchy, scene.membersOf(part), search, ray, hierarchy.slack());
+  Triangles<kAny> triangles(hierarchy, part.members, search, ray, hierarchy.slack());
   traverse<!kAny>(hierarchy.tree(), NodeRay<false>(ray), ray.end(search.end()), triangles);
 }
 
 // The exact kernel asked about every triangle of a part.
 template <bool kAny>
-HRT_TARGET void askAll(const TopLevel& scene, const Placed& part, Search& search)
+HRT_TARGET void askAll(const Placed& part, Search& search)
 {
   const Hierarchy& hierarchy = *part.hierarchy;
   constexpr unsigned int lanes = (1u << kLanes) - 1u;
@@ -339,11 +338,11 @@ HRT_TARGET void askAll(const TopLevel& scene, const Placed& part, Search& search
   {
     if (kAny)
     {
-      search.found = hierarchy.any(i, { lanes, 0 }, scene.membersOf(part), search);
+      search.found = hierarchy.any(i, { lanes, 0 }, part.members, search);
     }
     else
     {
-      hierarchy.nearest(i, lanes, scene.membersOf(part), search);
+      hierarchy.nearest(i, lanes, part.members, search);
     }
   }
 }
@@ -354,8 +353,7 @@ constexpr double kWidestMargin = 4.0;
 // A ray from so far away, or a part placed so far off, that double precision cannot tell to within
 // a float's rounding where the one meets the other.
 template <bool kAny>
-HRT_TARGET __attribute__((noinline)) void searchFar(
-  const TopLevel& scene, const Placed& part, Search& search)
+HRT_TARGET __attribute__((noinline)) void searchFar(const Placed& part, Search& search)
 {
   const Hierarchy& hierarchy = *part.hierarchy;
   // A quarter more is for the rounding of the margin itself, and of what it is added to.
@@ -363,7 +361,7 @@ HRT_TARGET __attribute__((noinline)) void searchFar(
   const double reach = hierarchy.box().reach();
   if (!(margin <= kWidestMargin * reach))
   {
-    askAll<kAny>(scene, part, search);
+    askAll<kAny>(part, search);
     return;
   }
   TraversalRay ray;
@@ -371,24 +369,24 @@ HRT_TARGET __attribute__((noinline)) void searchFar(
   {
     // The sieve takes its bounds for floats' roundings from a reach: this one's is the margin.
     const SieveSlack slack(reach + 0x1p24 * margin);
-    Triangles<kAny> triangles(hierarchy, scene.membersOf(part), search, ray, slack);
+    Triangles<kAny> triangles(hierarchy, part.members, search, ray, slack);
     traverse<!kAny>(hierarchy.tree(), NodeRay<true>(ray), ray.end(search.end()), triangles);
   }
 }
 
 // For an ordinary ray.
 template <bool kAny>
-HRT_TARGET void searchPart(const TopLevel& scene, const Placed& part, Search& search)
+HRT_TARGET void searchPart(const Placed& part, Search& search)
 {
   if (!(largest(search.ray->origin) <= part.near))
   {
-    searchFar<kAny>(scene, part, search);
+    searchFar<kAny>(part, search);
     return;
   }
   TraversalRay ray;
   if (part.enter(search, part.hierarchy->entry(), 0.0, ray))
   {
-    searchEntered<kAny>(scene, part, ray, search);
+    searchEntered<kAny>(part, ray, search);
   }
 }
 
@@ -411,12 +409,13 @@ struct Parts
 
   HRT_LANES float operator()(std::uint32_t leaf, float end)
   {
-    const Placed& part = this->scene.leaf(leaf);
+    PlacedScratch scratch;
+    const Placed& part = this->scene.leaf(leaf, scratch);
     if (!takesPart<kAny>(part))
     {
       return end;
     }
-    searchPart<kAny>(this->scene, part, this->search);
+    searchPart<kAny>(part, this->search);
     return this->search.found ? -1.0f : this->ray.end(this->search.end());
   }
 };
@@ -428,9 +427,11 @@ HRT_TARGET __attribute__((noinline)) void searchEach(
 {
   for (std::size_t i = 0; i < scene.size() && !search.found; ++i)
   {
-    if (takesPart<kAny>(scene.part(i)))
+    PlacedScratch scratch;
+    const Placed& part = scene.part(i, scratch);
+    if (takesPart<kAny>(part))
     {
-      searchOne(scene, scene.part(i), search);
+      searchOne(part, search);
     }
   }
 }
@@ -453,7 +454,8 @@ HRT_TARGET void searchScene(const TopLevel& scene, Search& search)
   }
   if (scene.size() == 1)
   {
-    searchPart<kAny>(scene, scene.part(0), search);
+    PlacedScratch scratch;
+    searchPart<kAny>(scene.part(0, scratch), search);
     return;
   }
   if (!(largest(ray.origin) <= scene.near()))

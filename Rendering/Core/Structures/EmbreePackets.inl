@@ -239,7 +239,6 @@ HRT_LANES void searchSingly(Packet& packet, int i, Searcher searcher)
 template <bool kAny>
 struct PartTracer
 {
-  const TopLevel& scene;
   const Placed& part;
   const PacketRays& local;
   Packet& packet;
@@ -249,7 +248,7 @@ struct PartTracer
   {
     const Hierarchy& hierarchy = *this->part.hierarchy;
     PacketTriangles<kAny> triangles(
-      hierarchy, this->scene.membersOf(this->part), this->packet, this->entry, frustum);
+      hierarchy, this->part.members, this->packet, this->entry, frustum);
     traverse<!kAny>(hierarchy.tree(), frustum, frustum.end(this->entry), triangles);
     triangles.decide(1);
   }
@@ -258,7 +257,7 @@ struct PartTracer
     const TraversalRay ray = this->entry.ray(this->local, static_cast<unsigned int>(i));
     searchSingly<kAny>(this->packet, i,
       [&](Search& search) HRT_TARGET
-      { searchEntered<kAny>(this->scene, this->part, ray, search); });
+      { searchEntered<kAny>(this->part, ray, search); });
   }
 };
 
@@ -286,14 +285,13 @@ HRT_TARGET void place(
 
 // Some of the packet's rays in the part, as far as they go.
 template <bool kAny>
-HRT_TARGET void searchPart(
-  const TopLevel& scene, const Placed& part, Packet& packet, unsigned int which)
+HRT_TARGET void searchPart(const Placed& part, Packet& packet, unsigned int which)
 {
   const unsigned int far = which & packet.rays.beyond(part.near);
   for (unsigned int rest = far; rest != 0; rest &= rest - 1)
   {
     searchSingly<kAny>(packet, lowest(rest),
-      [&](Search& search) HRT_TARGET { searchFar<kAny>(scene, part, search); });
+      [&](Search& search) HRT_TARGET { searchFar<kAny>(part, search); });
   }
   if (which == far)
   {
@@ -302,7 +300,7 @@ HRT_TARGET void searchPart(
   PacketRays local;
   place(part, packet.rays, which & ~far, local);
   PacketEntry entry(part.hierarchy->entry(), local);
-  PartTracer<kAny> tracer{ scene, part, local, packet, entry };
+  PartTracer<kAny> tracer{ part, local, packet, entry };
   traceTogether(entry, part.hierarchy->box(), tracer);
 }
 
@@ -329,12 +327,13 @@ struct SceneTracer
 
   HRT_LANES float operator()(std::uint32_t leaf, float end)
   {
-    const Placed& part = this->scene.leaf(leaf);
+    PlacedScratch scratch;
+    const Placed& part = this->scene.leaf(leaf, scratch);
     if (!takesPart<kAny>(part))
     {
       return end;
     }
-    searchPart<kAny>(this->scene, part, this->packet, this->frustum->rays);
+    searchPart<kAny>(part, this->packet, this->frustum->rays);
     const unsigned int left = this->frustum->rays & this->packet.rays.active;
     if (kAny)
     {
@@ -371,7 +370,8 @@ HRT_TARGET void searchScene(const TopLevel& scene, Packet& packet, unsigned int 
   }
   if (scene.size() == 1)
   {
-    searchPart<kAny>(scene, scene.part(0), packet, packet.rays.active);
+    PlacedScratch scratch;
+    searchPart<kAny>(scene.part(0, scratch), packet, packet.rays.active);
     return;
   }
   packet.rays.repeatActive();

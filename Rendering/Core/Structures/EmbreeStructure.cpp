@@ -22,19 +22,6 @@ namespace embree
 namespace
 {
 
-TraversalBox boxInScene(const TraversalBox& local, const glm::dmat4& toScene)
-{
-  TraversalBox box;
-  for (int corner = 0; corner < 8; ++corner)
-  {
-    const glm::dvec4 point((corner & 1) ? local.upper.x : local.lower.x,
-      (corner & 2) ? local.upper.y : local.lower.y, (corner & 4) ? local.upper.z : local.lower.z,
-      1.0);
-    box.include(glm::dvec3(toScene * point));
-  }
-  return box;
-}
-
 // The triangles of one geometry in its own coordinates.
 std::vector<SourceTriangle> localTriangles(const Geometry& geometry)
 {
@@ -45,12 +32,6 @@ std::vector<SourceTriangle> localTriangles(const Geometry& geometry)
     triangles[i] = { { corner[0], corner[1], corner[2] }, 0, static_cast<std::uint32_t>(i) };
   }
   return triangles;
-}
-
-Member memberOf(const Part& part, const glm::dvec3& sceneOrigin)
-{
-  return { positionsToScene(part, sceneOrigin), part.firstTriangle, part.visibleToRays,
-    part.castsShadow };
 }
 
 } // namespace
@@ -182,53 +163,44 @@ struct EmbreeStructure::Implementation
 
   bool updateTop(const Snapshot& snapshot, const Grouping& now)
   {
-    std::vector<embree::Placed> placed;
-    std::vector<embree::Member> members;
-    placed.reserve(snapshot.parts.size() + 2);
-    members.reserve(snapshot.parts.size() + this->merged.parts.size());
-    this->placeMerged(this->merged, snapshot, placed, members);
-    this->placeMerged(this->flat, snapshot, placed, members);
+    embree::TopLevelParts parts;
+    parts.placed.reserve(snapshot.parts.size() + 2);
+    parts.members.reserve(snapshot.parts.size() + this->merged.parts.size());
+    this->placeMerged(this->merged, snapshot, parts);
+    this->placeMerged(this->flat, snapshot, parts);
     for (std::size_t i = 0; i < snapshot.parts.size(); ++i)
     {
       if (now.parts[i].place == Place::Alone)
       {
-        this->placeOwn(snapshot.parts[i], snapshot.origin, placed, members);
+        this->placeOwn(snapshot.parts[i], snapshot.origin, parts);
       }
     }
-    return this->top->update(this->device, std::move(placed), std::move(members));
-  }
-
-  void addMember(embree::Placed& placed, const Part& part, const glm::dvec3& origin,
-    std::vector<embree::Member>& members)
-  {
-    members.push_back(embree::memberOf(part, origin));
-    placed.visibleToRays = placed.visibleToRays || part.visibleToRays;
-    placed.castsShadow = placed.castsShadow || part.castsShadow;
+    return this->top->update(this->device, std::move(parts));
   }
 
   void placeMerged(const embree::MergedHierarchy& hierarchy, const Snapshot& snapshot,
-    std::vector<embree::Placed>& placed, std::vector<embree::Member>& members)
+    embree::TopLevelParts& parts)
   {
     embree::Placed result;
-    result.firstMember = members.size();
+    result.firstMember = parts.members.size();
     for (const std::size_t part : hierarchy.parts)
     {
       if (part == kNewPart)
       {
-        members.emplace_back();
+        parts.members.emplace_back();
+        continue;
       }
-      else
-      {
-        this->addMember(result, snapshot.parts[part], snapshot.origin, members);
-      }
+      parts.members.push_back(embree::memberOf(snapshot.parts[part], snapshot.origin));
+      result.visibleToRays = result.visibleToRays || parts.members.back().visibleToRays;
+      result.castsShadow = result.castsShadow || parts.members.back().castsShadow;
     }
     if (!result.visibleToRays && !result.castsShadow)
     {
-      members.resize(result.firstMember);
+      parts.members.resize(result.firstMember);
       return;
     }
     const glm::dvec3 shift = snapshot.origin - hierarchy.anchor;
-    result.hierarchy = hierarchy.hierarchy;
+    result.hierarchy = hierarchy.hierarchy.get();
     result.fromScene[3] = glm::dvec4(shift, 1.0);
     result.onlyShifted = true;
     result.placement = Placement(glm::translate(glm::dmat4(1.0), -shift), glm::dmat3(1.0),
@@ -236,25 +208,25 @@ struct EmbreeStructure::Implementation
     result.setNear();
     result.box.include(hierarchy.hierarchy->box().lower - shift);
     result.box.include(hierarchy.hierarchy->box().upper - shift);
-    placed.push_back(std::move(result));
+    parts.placed.push_back(result);
+    parts.hierarchies.push_back(hierarchy.hierarchy);
   }
 
-  void placeOwn(const Part& part, const glm::dvec3& origin, std::vector<embree::Placed>& placed,
-    std::vector<embree::Member>& members)
+  void placeOwn(const Part& part, const glm::dvec3& origin, embree::TopLevelParts& parts)
   {
+    const std::shared_ptr<embree::Hierarchy>& own = this->owns.at(part.geometry->version);
+    parts.hierarchies.push_back(own);
+    if (part.copies)
+    {
+      parts.copies.push_back({ own.get(), part, origin });
+      return;
+    }
     embree::Placed result;
-    result.firstMember = members.size();
-    this->addMember(result, part, origin, members);
-    const glm::dmat4& toScene = members.back().toScene;
-    result.hierarchy = this->owns.at(part.geometry->version);
-    const glm::dmat3 inverse = glm::inverse(glm::dmat3(toScene));
-    result.fromScene = glm::dmat4(inverse);
-    result.fromScene[3] = glm::dvec4(-(inverse * glm::dvec3(toScene[3])), 1.0);
-    result.onlyShifted = inverse == glm::dmat3(1.0);
-    result.placement = Placement(toScene, inverse, result.hierarchy->box().reach());
-    result.setNear();
-    result.box = embree::boxInScene(result.hierarchy->box(), toScene);
-    placed.push_back(std::move(result));
+    result.firstMember = parts.members.size();
+    parts.members.push_back(embree::memberOf(part, origin));
+    result.place(*own, parts.members.back());
+    result.setBox(*own, parts.members.back());
+    parts.placed.push_back(result);
   }
 };
 

@@ -13,18 +13,27 @@ namespace hrt
 namespace embree
 {
 
+// The part, or its copy of that number, as its hierarchy sees it.
+Member memberOf(const Part& part, const glm::dvec3& sceneOrigin, std::size_t copy = 0);
+
 // A hierarchy with its place in the scene.
 struct Placed
 {
-  std::shared_ptr<const Hierarchy> hierarchy;
+  const Hierarchy* hierarchy = nullptr;
   glm::dmat4 fromScene{ 1.0 };
   bool onlyShifted = false; // fromScene is a translation
   Placement placement;
   double near = 0.0; // rays from within so much of the scene's coordinates are near ones
   TraversalBox box;  // in scene coordinates
   std::size_t firstMember = 0;
+  const Member* members = nullptr;
   bool visibleToRays = false; // some member is
   bool castsShadow = false;
+
+  // Of a hierarchy of one part in its own coordinates: everything that follows from the member's
+  // matrix, but the box, and the box, which no ray asks for.
+  void place(const Hierarchy& own, const Member& member);
+  void setBox(const Hierarchy& own, const Member& member);
 
   bool operator==(const Placed& o) const
   {
@@ -56,17 +65,53 @@ struct Placed
   }
 };
 
+// The copies of a part (Copies.h), each of which is a leaf of the upper tree. Where a copy stands is
+// derived from its matrix when a ray comes by: kept for a million of them it would fill the memory.
+struct PlacedCopies
+{
+  const Hierarchy* hierarchy = nullptr;
+  Part part;
+  glm::dvec3 origin{ 0.0 }; // of the scene
+
+  bool operator==(const PlacedCopies& o) const
+  {
+    return hierarchy == o.hierarchy && part.copies == o.part.copies &&
+      part.localToWorld == o.part.localToWorld && origin == o.origin;
+  }
+
+  Member member(std::size_t copy) const;
+  TraversalBox box(std::size_t copy) const; // in scene coordinates
+};
+
+// What the upper level is made of.
+struct TopLevelParts
+{
+  std::vector<Placed> placed;
+  std::vector<Member> members; // in the order of the placed hierarchies
+  std::vector<PlacedCopies> copies;
+  std::vector<std::shared_ptr<const Hierarchy>> hierarchies; // keeps those of the others alive
+};
+
+// Holds a copy that is placed while a ray goes through it.
+struct PlacedScratch
+{
+  Placed placed;
+  Member member;
+};
+
 class TopLevel
 {
 public:
-  // Members lie in the order of the placed hierarchies. Returns whether anything has moved.
-  bool update(Device& device, std::vector<Placed> placed, std::vector<Member> members);
+  // Returns whether anything has moved.
+  bool update(Device& device, TopLevelParts parts);
 
-  std::size_t size() const { return this->Parts.size(); }
-  const Placed& part(std::size_t i) const { return this->Parts[i]; }
-  const Member* membersOf(const Placed& part) const
+  // Placed hierarchies, each copy one.
+  std::size_t size() const { return this->Count; }
+  // Valid as long as the scratch is.
+  const Placed& part(std::size_t i, PlacedScratch& scratch) const
   {
-    return this->Members.data() + part.firstMember;
+    return i < this->Of.placed.size() ? this->Of.placed[i]
+                                      : this->copy(i - this->Of.placed.size(), scratch);
   }
   // Of several parts; its leaves are parts.
   const WideTree& tree() const { return this->Tree; }
@@ -75,14 +120,21 @@ public:
   // Of a placed part: for the upper tree.
   const Placement& placement() const { return this->Place; }
   double near() const { return this->Near; }
-  const Placed& leaf(std::uint32_t i) const { return this->Parts[this->PartOfLeaf[i]]; }
+  const Placed& leaf(std::uint32_t i, PlacedScratch& scratch) const
+  {
+    return this->part(this->PartOfLeaf[i], scratch);
+  }
 
 private:
   void rebuild(Device& device);
   void fit();
+  const PlacedCopies& groupOf(std::size_t& copy) const;
+  const Placed& copy(std::size_t i, PlacedScratch& scratch) const;
+  TraversalBox boxOf(std::size_t i) const;
 
-  std::vector<Placed> Parts;
-  std::vector<Member> Members;
+  TopLevelParts Of;
+  std::vector<std::size_t> FirstCopy; // of each part with copies, among all copies
+  std::size_t Count = 0;
   TraversalBox Box;
   EntryBox Entry;
   Placement Place;

@@ -22,7 +22,7 @@ struct Box
 
 bool meetsRays(const Part& part)
 {
-  return part.geometry->triangleCount() > 0 && (part.visibleToRays || part.castsShadow);
+  return part.triangleCount() > 0 && (part.visibleToRays || part.castsShadow);
 }
 
 // Numbers in the last snapshot by key. Parts mostly stay in their order: only where one does not is
@@ -157,7 +157,8 @@ private:
     for (std::size_t i = 0; i < this->Parts.size(); ++i)
     {
       const std::size_t count = copies[this->Parts[i].version];
-      this->Copied[i] = count > 1 && count * this->Parts[i].triangles > kMostCopiedTriangles;
+      this->Copied[i] = this->Now.parts[i].copies ||
+        (count > 1 && count * this->Parts[i].triangles > kMostCopiedTriangles);
     }
   }
 
@@ -264,9 +265,11 @@ private:
       {
         continue;
       }
+      const bool hasCopies = this->Now.parts[i].copies != nullptr;
       const bool tiny = part.triangles <= kTinyPart && !this->Copied[i];
-      part.place = tiny || isIllConditioned(part.positionsToWorld) ? Place::Flat : Place::Alone;
-      if (part.place == Place::Alone)
+      part.place = !hasCopies && (tiny || isIllConditioned(part.positionsToWorld)) ? Place::Flat
+                                                                                  : Place::Alone;
+      if (part.place == Place::Alone && !hasCopies)
       {
         moving.push_back(i);
       }

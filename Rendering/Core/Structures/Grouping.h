@@ -15,7 +15,7 @@
 //      those too small to be worth a structure are put in one flat structure, built for each
 //      movement.
 //   6. A geometry of many copies is never multiplied: its parts stand alone and share one
-//   structure.
+//   structure. A part with copies of its own (Copies.h) stands alone, whatever its size and matrices.
 //   7. A matrix that cannot be inverted to full precision has no place on its own: merged or flat.
 //   8. A single resting part stands alone: that is as fast, and it may begin to move for free.
 #pragma once

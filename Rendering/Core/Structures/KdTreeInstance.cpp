@@ -6,12 +6,13 @@ namespace hrt
 namespace kdtree
 {
 
-Instance makeInstance(
-  const Part& part, std::shared_ptr<const TriangleTree> triangles, const glm::dvec3& sceneOrigin)
+Instance makeInstance(const Part& part, const TriangleTree& triangles,
+  const glm::dvec3& sceneOrigin, std::size_t copy)
 {
   Instance instance;
-  instance.placed = { positionsToScene(part, sceneOrigin), part.firstTriangle };
-  instance.triangles = std::move(triangles);
+  instance.placed = { positionsToScene(part, sceneOrigin, copy),
+    part.firstTriangle + static_cast<TriangleId>(copy * part.geometry->triangleCount()) };
+  instance.triangles = &triangles;
   instance.visibleToRays = part.visibleToRays;
   instance.castsShadow = part.castsShadow;
   const glm::dmat4& toScene = instance.placed.toScene;

@@ -7,6 +7,7 @@
 #include "Rendering/Core/Structures/KdTreeParts.h"
 #include "Rendering/Core/Structures/Placement.h"
 
+#include <cstddef>
 #include <memory>
 
 namespace hrt
@@ -24,7 +25,7 @@ struct TriangleTree
 // A placed tree.
 struct Instance
 {
-  std::shared_ptr<const TriangleTree> triangles;
+  const TriangleTree* triangles = nullptr;
   PlacedTriangles placed;
   glm::dmat3 inverse{ 1.0 };
   Placement placement;
@@ -47,8 +48,9 @@ struct Instance
   }
 };
 
-Instance makeInstance(
-  const Part& part, std::shared_ptr<const TriangleTree> triangles, const glm::dvec3& sceneOrigin);
+// Of the part's copy of that number. `triangles` must outlive it.
+Instance makeInstance(const Part& part, const TriangleTree& triangles,
+  const glm::dvec3& sceneOrigin, std::size_t copy = 0);
 
 } // namespace kdtree
 } // namespace hrt

@@ -6,6 +6,7 @@
 
 #include <tbb/task_arena.h>
 
+#include <algorithm>
 #include <chrono>
 #include <unordered_map>
 
@@ -21,7 +22,7 @@ using Instances = std::vector<Instance>;
 
 bool meetsRays(const Part& part)
 {
-  return part.geometry->triangleCount() > 0 && (part.visibleToRays || part.castsShadow);
+  return part.triangleCount() > 0 && (part.visibleToRays || part.castsShadow);
 }
 
 } // namespace
@@ -33,7 +34,39 @@ struct KdTreeStructure::Implementation
   KdTreeSettings settings;
   Trees trees; // by Geometry::version
   Instances instances;
+  // Parts with copies, each of which is an instance, made when a ray comes by: kept for a million of
+  // them they would fill the memory. Their numbers follow those of the instances.
+  struct Copied
+  {
+    Part part;
+    const TriangleTree* triangles;
+    std::size_t first; // number of its first copy
+
+    bool operator==(const Copied& o) const
+    {
+      return triangles == o.triangles && part.copies == o.part.copies &&
+        part.localToWorld == o.part.localToWorld && part.firstTriangle == o.part.firstTriangle &&
+        part.visibleToRays == o.part.visibleToRays && part.castsShadow == o.part.castsShadow;
+    }
+  };
+  std::vector<Copied> copied;
+  glm::dvec3 origin{ 0.0 }; // of the scene, which the copies are placed relative to
+  std::size_t count = 0;    // of all instances
   KdTreeParts parts;
+
+  // The instance of a number; `scratch` holds that of a copy.
+  const Instance& instance(std::size_t i, Instance& scratch) const
+  {
+    if (i < this->instances.size())
+    {
+      return this->instances[i];
+    }
+    const auto after = std::upper_bound(this->copied.begin(), this->copied.end(), i,
+      [](std::size_t number, const Copied& c) { return number < c.first; });
+    const Copied& of = after[-1];
+    scratch = makeInstance(of.part, *of.triangles, this->origin, i - of.first);
+    return scratch;
+  }
 
   std::shared_ptr<const TriangleTree> build(const std::shared_ptr<const Geometry>& geometry) const;
   std::shared_ptr<const TriangleTree> treeOf(
@@ -97,21 +130,22 @@ template <class Test, class Counters>
 void KdTreeStructure::Implementation::search(const ExactSearch& search,
   bool Instance::*takesPart, Test& test, Counters& counters) const
 {
-  if (!search.valid() || this->instances.empty())
+  if (!search.valid() || this->count == 0)
   {
     return;
   }
   const kdtree::ScaledRay ray(search.ray());
   const double originReach = largest(ray.origin);
   const auto visit = [&](std::size_t i) {
-    const Instance& instance = this->instances[i];
+    Instance scratch;
+    const Instance& instance = this->instance(i, scratch);
     if (instance.*takesPart)
     {
       kdtree::searchInstance(instance, ray, originReach, search, test, counters);
     }
     return test.done() ? -1.0 : search.end() * ray.perT;
   };
-  if (this->instances.size() == 1)
+  if (this->count == 1)
   {
     visit(0);
     return;
@@ -152,25 +186,44 @@ StructureReport KdTreeStructure::update(const Snapshot& snapshot)
 {
   const auto started = std::chrono::steady_clock::now();
   StructureReport report;
+  Implementation& impl = *this->Impl;
   Implementation::Trees current;
   Instances instances;
+  std::vector<Implementation::Copied> copied;
+  std::size_t count = 0;
   for (const Part& part : snapshot.parts)
   {
-    if (meetsRays(part))
+    if (meetsRays(part) && !part.copies)
     {
       instances.push_back(
-        makeInstance(part, this->Impl->treeOf(part, current, report), snapshot.origin));
+        makeInstance(part, *impl.treeOf(part, current, report), snapshot.origin));
+      ++count;
     }
   }
-  if (instances != this->Impl->instances)
+  for (const Part& part : snapshot.parts)
   {
-    std::vector<PartBox> boxes;
-    for (const Instance& instance : instances)
+    if (meetsRays(part) && part.copies)
     {
-      boxes.push_back(instance.box);
+      copied.push_back({ part, impl.treeOf(part, current, report).get(), count });
+      count += part.copyCount();
     }
-    this->Impl->parts = KdTreeParts(boxes);
-    this->Impl->instances.swap(instances);
+  }
+  const bool sameCopies =
+    copied == impl.copied && (copied.empty() || snapshot.origin == impl.origin);
+  if (instances != impl.instances || !sameCopies)
+  {
+    impl.instances.swap(instances);
+    impl.copied.swap(copied);
+    impl.origin = snapshot.origin;
+    impl.count = count;
+    std::vector<PartBox> boxes;
+    boxes.reserve(count);
+    for (std::size_t i = 0; i < count; ++i)
+    {
+      Instance scratch;
+      boxes.push_back(impl.instance(i, scratch).box);
+    }
+    impl.parts = KdTreeParts(boxes);
     report.partsRebuilt = true;
   }
   this->Impl->trees.swap(current);
@@ -207,9 +260,9 @@ std::vector<KdTreeQuality> KdTreeStructure::quality() const
   std::vector<const TriangleTree*> seen;
   for (const Instance& instance : this->Impl->instances)
   {
-    if (std::find(seen.begin(), seen.end(), instance.triangles.get()) == seen.end())
+    if (std::find(seen.begin(), seen.end(), instance.triangles) == seen.end())
     {
-      seen.push_back(instance.triangles.get());
+      seen.push_back(instance.triangles);
       result.push_back(instance.triangles->tree->quality());
     }
   }

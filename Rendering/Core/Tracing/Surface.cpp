@@ -35,11 +35,6 @@ bool hitPrimary(const Corners& corners, TriangleId id, const Ray& ray, Hit& hit)
   return true;
 }
 
-std::size_t indexInPart(const Part& part, TriangleId id)
-{
-  return id - part.firstTriangle;
-}
-
 // The interpolated corner normal, or zero when the geometry has none.
 glm::dvec3 cornerNormal(const Geometry& geometry, std::size_t triangle, const Hit& hit)
 {
@@ -67,20 +62,28 @@ glm::vec4 scalarColor(const Geometry& geometry, std::size_t triangle, const Hit&
   return glm::vec4(geometry.lookup[static_cast<std::size_t>(texel)]) / 255.0f;
 }
 
+PhongTerms withScalarColor(PhongTerms terms, const glm::vec4& color)
+{
+  terms.ambientColor = terms.diffuseColor = glm::vec3(color);
+  terms.opacity *= color.a;
+  return terms;
+}
+
 // VTK's rule: scalar colours replace the front's ambient and diffuse colour, keep its coefficients
 // and switch the backface property off.
 PhongTerms termsAt(const Part& part, std::size_t triangle, const Hit& hit, bool frontSide)
 {
   const Geometry& geometry = *part.geometry;
+  if (part.copies && !part.copies->colors.empty())
+  {
+    return withScalarColor(part.material.front,
+      glm::vec4(part.copies->colors[part.copyOf(hit.triangle)]) / 255.0f);
+  }
   if (geometry.colorSource == ColorSource::Property)
   {
     return frontSide ? part.material.front : part.material.back;
   }
-  PhongTerms terms = part.material.front;
-  const glm::vec4 color = scalarColor(geometry, triangle, hit);
-  terms.ambientColor = terms.diffuseColor = glm::vec3(color);
-  terms.opacity *= color.a;
-  return terms;
+  return withScalarColor(part.material.front, scalarColor(geometry, triangle, hit));
 }
 
 shading::HrtSurface colorsOf(const PhongTerms& terms)
@@ -97,20 +100,38 @@ Surfaces::Surfaces(const Snapshot& snapshot)
   this->Placements.reserve(snapshot.parts.size());
   for (const Part& part : snapshot.parts)
   {
-    const glm::dmat4 toScene = positionsToScene(part, snapshot.origin);
-    const glm::dmat3 linear(toScene);
-    this->Placements.push_back(
-      { toScene, glm::transpose(glm::inverse(linear)), glm::determinant(linear) < 0.0 });
+    this->Placements.push_back(placement(part, snapshot.origin, 0));
   }
+}
+
+Surfaces::Placement Surfaces::placement(
+  const Part& part, const glm::dvec3& origin, std::size_t copy)
+{
+  const glm::dmat4 toScene = positionsToScene(part, origin, copy);
+  const glm::dmat3 linear(toScene);
+  return { toScene, glm::transpose(glm::inverse(linear)), glm::determinant(linear) < 0.0 };
+}
+
+const Surfaces::Placement& Surfaces::placementOf(
+  std::size_t part, TriangleId id, Placement& scratch) const
+{
+  const Part& of = this->Scene.parts[part];
+  if (!of.copies)
+  {
+    return this->Placements[part];
+  }
+  scratch = placement(of, this->Scene.origin, of.copyOf(id));
+  return scratch;
 }
 
 bool Surfaces::primaryHit(TriangleId id, const Ray& ray, Hit& hit) const
 {
   const std::size_t index = this->Scene.partOf(id);
   const Part& part = this->Scene.parts[index];
-  return hitPrimary(
-    sceneCorners(*part.geometry, this->Placements[index].toScene, indexInPart(part, id)), id, ray,
-    hit);
+  Placement scratch;
+  return hitPrimary(sceneCorners(*part.geometry, this->placementOf(index, id, scratch).toScene,
+                      part.indexOf(id)),
+    id, ray, hit);
 }
 
 bool Surfaces::exactHit(
@@ -118,9 +139,10 @@ bool Surfaces::exactHit(
 {
   const std::size_t index = this->Scene.partOf(id);
   const Part& part = this->Scene.parts[index];
+  Placement scratch;
   TriangleHit found;
-  if (!ray.hitsTriangle(
-        sceneCorners(*part.geometry, this->Placements[index].toScene, indexInPart(part, id)),
+  if (!ray.hitsTriangle(sceneCorners(*part.geometry,
+                          this->placementOf(index, id, scratch).toScene, part.indexOf(id)),
         tMaximum, found))
   {
     return false;
@@ -135,8 +157,9 @@ SurfacePoint Surfaces::at(const Hit& hit, const glm::dvec3& direction) const
   point.triangle = hit.triangle;
   point.part = this->Scene.partOf(hit.triangle);
   const Part& part = this->Scene.parts[point.part];
-  const Placement& placement = this->Placements[point.part];
-  const std::size_t triangle = indexInPart(part, hit.triangle);
+  Placement scratch;
+  const Placement& placement = this->placementOf(point.part, hit.triangle, scratch);
+  const std::size_t triangle = part.indexOf(hit.triangle);
   const Corners corners = sceneCorners(*part.geometry, placement.toScene, triangle);
 
   const glm::dvec3 e1 = corners.b - corners.a, e2 = corners.c - corners.a;
@@ -169,8 +192,9 @@ SurfacePoint Surfaces::at(const Hit& hit, const glm::dvec3& direction) const
 bool primaryHit(const Snapshot& snapshot, TriangleId id, const Ray& ray, Hit& hit)
 {
   const Part& part = snapshot.parts[snapshot.partOf(id)];
-  return hitPrimary(sceneCorners(*part.geometry, positionsToScene(part, snapshot.origin),
-                      indexInPart(part, id)),
+  return hitPrimary(sceneCorners(*part.geometry,
+                      positionsToScene(part, snapshot.origin, part.copyOf(id)),
+                      part.indexOf(id)),
     id, ray, hit);
 }
 

@@ -62,8 +62,12 @@ private:
     bool mirrored;
   };
 
+  static Placement placement(const Part& part, const glm::dvec3& origin, std::size_t copy);
+  // Of the copy that the triangle belongs to; `scratch` holds it where there is no table.
+  const Placement& placementOf(std::size_t part, TriangleId id, Placement& scratch) const;
+
   const Snapshot& Scene;
-  std::vector<Placement> Placements;
+  std::vector<Placement> Placements; // one a part, of its first copy
 };
 
 // The same for a single pixel, without a table.

@@ -16,7 +16,8 @@ namespace scene
 std::unique_ptr<MapperAdapter> makeAdapter(vtkMapper* mapper)
 {
   // The last one takes every vtkPolyDataMapper that the others have not.
-  static const AdapterKind kinds[] = { compositeKind(), dataSetKind(), polyDataKind() };
+  static const AdapterKind kinds[] = { glyph3DKind(), compositeKind(), dataSetKind(),
+    polyDataKind() };
   for (const AdapterKind& kind : kinds)
   {
     if (kind.reads(mapper))

@@ -20,6 +20,7 @@ struct AdapterKind
 };
 
 // The kinds of this folder, in the order in which they are asked.
+AdapterKind glyph3DKind();
 AdapterKind compositeKind();
 AdapterKind dataSetKind();
 AdapterKind polyDataKind();

@@ -4,6 +4,7 @@
 // knows pieces and no mapper.
 #pragma once
 
+#include "Rendering/Core/Copies.h"
 #include "Rendering/Scene/ActorClassification.h"
 
 #include "vtkDataArray.h"
@@ -43,6 +44,8 @@ struct SurfacePiece
   // Of each cell of the data its number in the mapper's input; null: the same.
   vtkSmartPointer<vtkDataArray> originalCells;
   PieceOverrides overrides;
+  // Where the data are there many times. Their bounds, which the mesh decides, are set by the reader.
+  std::shared_ptr<Copies> copies;
   std::uint64_t key = 0;   // which of the mapper's pieces: the same in later frames
   std::int64_t block = -1; // flat index in composite data
 };

@@ -249,7 +249,7 @@ TEST(KdTreeStructure, TheWidthOfVectorsDoesNotShow)
   const auto triangles = std::make_shared<kdtree::TriangleTree>();
   triangles->geometry = mesh;
   triangles->tree = KdTree::build(*mesh);
-  const kdtree::Instance instance = kdtree::makeInstance(s.parts[0], triangles, s.origin);
+  const kdtree::Instance instance = kdtree::makeInstance(s.parts[0], *triangles, s.origin);
   Random random(13);
   int hits = 0, wrong = 0;
   for (int i = 0; i < 3000; ++i)

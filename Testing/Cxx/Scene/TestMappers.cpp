@@ -3,11 +3,12 @@
 
 #include "Rendering/OpenGL2/CompositeMappers.h"
 
+#include "vtkBitArray.h"
 #include "vtkCellData.h"
 #include "vtkCompositeDataDisplayAttributes.h"
 #include "vtkDataSetMapper.h"
 #include "vtkDoubleArray.h"
-#include "vtkHexahedron.h"
+#include "vtkGlyph3DMapper.h"
 #include "vtkImageData.h"
 #include "vtkLODActor.h"
 #include "vtkMultiBlockDataSet.h"
@@ -252,6 +253,171 @@ TEST_F(Composite, PolyDataIsOneBlock)
 {
   this->mapper->SetInputDataObject(this->squares[0]);
   EXPECT_EQ(this->blocks(), std::vector<std::int64_t>{ 0 });
+}
+
+//------------------------------------------------------------------------------
+class Glyphs : public Mappers
+{
+protected:
+  Glyphs()
+  {
+    vtkNew<vtkPoints> points;
+    for (int i = 0; i < 4; ++i)
+    {
+      points->InsertNextPoint(1e6 + 10.0 * i, i, 0);
+    }
+    this->places->SetPoints(points);
+    this->mapper->SetInputData(this->places);
+    this->mapper->SetSourceData(makeSquare());
+    this->mapper->ScalingOff();
+    this->actor->SetMapper(this->mapper);
+  }
+
+  vtkDoubleArray* addArray(const char* name, int components, const std::vector<double>& values)
+  {
+    vtkNew<vtkDoubleArray> array;
+    array->SetName(name);
+    array->SetNumberOfComponents(components);
+    for (double v : values)
+    {
+      array->InsertNextValue(v);
+    }
+    this->places->GetPointData()->AddArray(array);
+    return array;
+  }
+
+  // Where the square's corner (1, 0, 0) is put by a copy of the only part.
+  glm::dvec3 corner(std::size_t copy)
+  {
+    const hrt::Part& part = this->update().parts.at(0);
+    return glm::dvec3(part.copies->matrix(copy) * glm::dvec4(1, 0, 0, 1)) -
+      glm::dvec3(1e6 + 10.0 * double(copy), double(copy), 0);
+  }
+
+  vtkNew<vtkPolyData> places;
+  vtkNew<vtkGlyph3DMapper> mapper;
+};
+
+TEST_F(Glyphs, AreCopiesOfOneMesh)
+{
+  const hrt::Snapshot& s = this->update();
+  ASSERT_EQ(s.parts.size(), 1u);
+  EXPECT_TRUE(this->scene->IsDrawnByTracer(this->actor));
+  ASSERT_TRUE(s.parts[0].copies);
+  EXPECT_EQ(s.parts[0].copyCount(), 4u);
+  EXPECT_EQ(s.triangleCount, 8u);
+  EXPECT_EQ(s.parts[0].copies->id(3), 3);
+  EXPECT_EQ(s.boundsMin, glm::dvec3(1e6, 0, 0));
+  EXPECT_EQ(s.boundsMax, glm::dvec3(1e6 + 31, 4, 0));
+  const auto version = s.parts[0].copies->version;
+  EXPECT_EQ(this->update().parts[0].copies->version, version);
+  EXPECT_FALSE(this->scene->GetChanges().any());
+}
+
+TEST_F(Glyphs, FollowScaleModesAndClamping)
+{
+  this->addArray("size", 1, { 1, 2, 3, 4 });
+  this->addArray("sizes", 3, { 1, 1, 1, 2, 3, 4, 0, 0, 0, 5, 6, 7 });
+  this->mapper->ScalingOn();
+  this->mapper->SetScaleFactor(0.5);
+  EXPECT_EQ(this->corner(2).x, 0.5) << "no array";
+  this->mapper->SetScaleArray("size");
+  this->mapper->SetScaleModeToScaleByMagnitude();
+  EXPECT_EQ(this->corner(2).x, 1.5);
+  this->mapper->ClampingOn();
+  this->mapper->SetRange(1.0, 3.0);
+  EXPECT_EQ(this->corner(1).x, 0.25);
+  EXPECT_EQ(this->corner(3).x, 0.5);
+  this->mapper->ClampingOff();
+  this->mapper->SetScaleArray("sizes");
+  this->mapper->SetScaleModeToScaleByVectorComponents();
+  EXPECT_EQ(this->corner(3).x, 2.5);
+  EXPECT_EQ(this->corner(2).x, float(1e-10)) << "nothing is as good as nothing";
+}
+
+TEST_F(Glyphs, FollowOrientationModes)
+{
+  this->addArray("turn", 3, { 0, 0, 90, 0, 0, 0, 1, 0, 0, 0, 1, 0 });
+  this->mapper->SetOrientationArray("turn");
+  this->mapper->SetOrientationModeToRotation();
+  const auto near = [](const glm::dvec3& a, const glm::dvec3& b) {
+    return glm::length(a - b) < 1e-6; // single precision
+  };
+  EXPECT_TRUE(near(this->corner(0), { 0, 1, 0 }));
+  EXPECT_TRUE(near(this->corner(1), { 1, 0, 0 }));
+  this->mapper->SetOrientationModeToDirection();
+  EXPECT_TRUE(near(this->corner(0), { 0, 0, 1 }));
+  EXPECT_TRUE(near(this->corner(2), { 1, 0, 0 }));
+  EXPECT_TRUE(near(this->corner(3), { 0, 1, 0 }));
+  this->addArray("quaternion", 4, { 1, 0, 0, 0, 0, 0, 0, 1, 1, 0, 0, 0, 1, 0, 0, 0 });
+  this->mapper->SetOrientationArray("quaternion");
+  this->mapper->SetOrientationModeToQuaternion();
+  EXPECT_TRUE(near(this->corner(0), { 1, 0, 0 }));
+  EXPECT_TRUE(near(this->corner(1), { -1, 0, 0 }));
+  this->mapper->OrientOff();
+  EXPECT_TRUE(near(this->corner(1), { 1, 0, 0 }));
+}
+
+TEST_F(Glyphs, AnArrayThatDoesNotFitIsSpokenOfAndNothingDrawn)
+{
+  this->addArray("turn", 2, { 0, 0, 1, 1, 2, 2, 3, 3 });
+  this->mapper->SetOrientationArray("turn");
+  EXPECT_TRUE(this->update().parts.empty());
+  ASSERT_EQ(this->messages.warnings.size(), 1u);
+  EXPECT_NE(this->messages.warnings[0].find("orientation array"), std::string::npos);
+}
+
+TEST_F(Glyphs, MasksAndSourcesChoose)
+{
+  vtkNew<vtkBitArray> mask;
+  mask->SetName("mask");
+  for (int bit : { 1, 0, 1, 1 })
+  {
+    mask->InsertNextValue(bit);
+  }
+  this->places->GetPointData()->AddArray(mask);
+  this->mapper->MaskingOn();
+  this->mapper->SetMaskArray("mask");
+  EXPECT_EQ(this->update().parts.at(0).copyCount(), 3u);
+  EXPECT_EQ(this->snapshot->parts[0].copies->id(1), 2);
+  this->mapper->MaskingOff();
+  this->addArray("kind", 1, { 0, 1, 1, 9 });
+  this->mapper->SetSourceData(1, makeMesh({ { 0, 0, 0 }, { 1, 0, 0 }, { 0, 1, 0 } }, { { 0, 1, 2 } }));
+  this->mapper->SetSourceIndexArray("kind");
+  this->mapper->SetSourceIndexing(true);
+  this->mapper->SetRange(0, 2);
+  const hrt::Snapshot& s = this->update();
+  ASSERT_EQ(s.parts.size(), 2u);
+  EXPECT_EQ(s.parts[0].copyCount(), 1u);
+  EXPECT_EQ(s.parts[1].copyCount(), 3u);
+  EXPECT_EQ(s.parts[1].copies->id(2), 3);
+  EXPECT_EQ(s.triangleCount, 5u);
+}
+
+TEST_F(Glyphs, AreColouredByTheScalarsOfTheirPoints)
+{
+  this->places->GetPointData()->SetScalars(this->addArray("value", 1, { 0, 1, 2, 3 }));
+  this->mapper->SetScalarRange(0, 3);
+  const hrt::Part& part = this->update().parts.at(0);
+  ASSERT_EQ(part.copies->colors.size(), 4u);
+  EXPECT_NE(part.copies->colors[0], part.copies->colors[3]);
+  EXPECT_EQ(part.geometry->colorSource, hrt::ColorSource::Property) << "not by the source's";
+  this->mapper->ScalarVisibilityOff();
+  EXPECT_TRUE(this->update().parts.at(0).copies->colors.empty());
+}
+
+TEST_F(Glyphs, OfLinesAreHosted)
+{
+  vtkNew<vtkPolyData> line;
+  line->ShallowCopy(makeSquare());
+  line->SetLines(makeCells({ { 0, 1 } }));
+  this->mapper->SetSourceData(line);
+  this->update();
+  EXPECT_FALSE(this->scene->IsDrawnByTracer(this->actor));
+  EXPECT_FALSE(this->scene->IsHosted(this->actor));
+  line->SetPolys(nullptr);
+  this->update();
+  EXPECT_TRUE(this->scene->IsHosted(this->actor));
 }
 
 } // anonymous namespace
