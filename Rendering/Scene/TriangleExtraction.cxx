@@ -14,6 +14,7 @@
 #include "vtkPolyData.h"
 #include "vtkPolygon.h"
 #include "vtkSmartPointer.h"
+#include "vtkVersionMacros.h" // For the name of vtkPolygon's triangulation
 
 #include <algorithm>
 #include <cmath>
@@ -185,8 +186,13 @@ bool appendEars(
     polygon->GetPointIds()->SetId(i, i);
   }
   vtkNew<vtkIdList> corners;
+#if VTK_VERSION_NUMBER >= VTK_VERSION_CHECK(9, 4, 0)
+  const bool cut = polygon->TriangulateLocalIds(0, corners) != 0; // its name from this release on
+#else
+  const bool cut = polygon->Triangulate(corners) != 0;
+#endif
   // A simple polygon of n points has n - 2 triangles, however it is cut.
-  if (!polygon->Triangulate(corners) || corners->GetNumberOfIds() != 3 * (count - 2))
+  if (!cut || corners->GetNumberOfIds() != 3 * (count - 2))
   {
     return false;
   }

@@ -329,6 +329,19 @@ void buildNaive(benchmark::State& state, const Geometry& mesh)
 
 // --- The table --------------------------------------------------------------------------------------
 
+// Whether a run ended with an error. google-benchmark renamed the member with release 1.8: the second
+// form stands for the older ones, and is chosen only where the first cannot be compiled.
+template <class Run>
+auto failed(const Run& run, int) -> decltype(static_cast<bool>(run.skipped))
+{
+  return static_cast<bool>(run.skipped);
+}
+template <class Run>
+bool failed(const Run& run, long)
+{
+  return run.error_occurred;
+}
+
 // Keeps the shortest time of each benchmark. Processor time, which waiting for a core does not lengthen,
 // for one thread; the clock's for more.
 class Fastest : public benchmark::BenchmarkReporter
@@ -344,7 +357,7 @@ public:
   {
     for (const Run& run : runs)
     {
-      if (run.run_type == Run::RT_Iteration && !run.error_occurred)
+      if (run.run_type == Run::RT_Iteration && !failed(run, 0))
       {
         const bool several = run.counters.find("threads") != run.counters.end();
         const double total = several ? run.real_accumulated_time : run.cpu_accumulated_time;
