@@ -28,9 +28,9 @@ std::uint64_t nextVersion()
 bool sameContent(const Geometry& a, const Geometry& b)
 {
   return a.origin == b.origin && a.colorSource == b.colorSource && a.lookupWidth == b.lookupWidth &&
-    a.lookupHeight == b.lookupHeight && a.cellIds == b.cellIds && a.positions == b.positions &&
-    a.normals == b.normals && a.colors == b.colors && a.coordinates == b.coordinates &&
-    a.lookup == b.lookup;
+    a.lookupHeight == b.lookupHeight && a.triangles == b.triangles && a.cellIds == b.cellIds &&
+    a.positions == b.positions && a.normals == b.normals && a.colors == b.colors &&
+    a.coordinates == b.coordinates && a.lookup == b.lookup;
 }
 
 //------------------------------------------------------------------------------
@@ -55,11 +55,9 @@ ExtractionPointer GeometryCache::extract(const Source& source, const Extraction*
   auto geometry = std::make_shared<Geometry>();
   auto extraction = std::make_shared<Extraction>();
   TriangleReport& report = extraction->report;
-  const Points points = readPoints(source.input);
-  Triangles triangles = triangulate(source.input, points, report);
-  writePositions(triangles, points, *geometry, report);
-  writeNormals(source.input, source.flat, triangles, *geometry, report);
-  extraction->colorsComplete = writeColors(source.mapper, source.input, triangles, *geometry);
+  const VertexPoints pointOf = writeVertices(source.input, source.flat,
+    triangulate(source.input, readPoints(source.input), report), *geometry, report);
+  extraction->colorsComplete = writeColors(source.mapper, source.input, pointOf, *geometry);
 
   if (before && sameContent(*before->geometry, *geometry))
   {
