@@ -99,7 +99,7 @@ void Scene::makeSecondary(const Ray& primary, const glm::dvec3& light)
   {
     return;
   }
-  const glm::vec3* p = this->mesh->positions.data() + 3 * std::size_t(hit.triangle);
+  const std::array<glm::vec3, 3> p = this->mesh->cornerPositions(hit.triangle);
   const glm::dvec3 a(p[0]), b(p[1]), c(p[2]);
   Ray ray;
   ray.originTriangle = hit.triangle;
@@ -129,12 +129,9 @@ public:
     auto* points = static_cast<glm::vec3*>(rtcSetNewGeometryBuffer(geometry,
       RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, sizeof(glm::vec3), mesh.positions.size()));
     std::copy(mesh.positions.begin(), mesh.positions.end(), points);
-    auto* indices = static_cast<std::uint32_t*>(rtcSetNewGeometryBuffer(geometry,
+    auto* triangles = static_cast<std::array<std::uint32_t, 3>*>(rtcSetNewGeometryBuffer(geometry,
       RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 12, mesh.triangleCount()));
-    for (std::size_t i = 0; i < mesh.positions.size(); ++i)
-    {
-      indices[i] = static_cast<std::uint32_t>(i);
-    }
+    std::copy(mesh.triangles.begin(), mesh.triangles.end(), triangles);
     rtcCommitGeometry(geometry);
     rtcAttachGeometry(this->Scene, geometry);
     rtcReleaseGeometry(geometry);

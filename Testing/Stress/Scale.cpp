@@ -147,12 +147,15 @@ std::shared_ptr<Geometry> comb(std::size_t count, std::size_t rows)
   auto geometry = std::make_shared<Geometry>(*scenes::makeGeometry({}));
   geometry->version = scenes::makeGeometry({})->version;
   geometry->positions.reserve(3 * count);
-  geometry->cellIds.assign(count, 0);
+  geometry->triangles.reserve(count);
   for (std::size_t i = 0; i < count; ++i)
   {
     const auto x = static_cast<float>(i / rows), y = static_cast<float>(i % rows);
     geometry->positions.insert(
       geometry->positions.end(), { { x, y, 0 }, { x + 0.9f, y, 0 }, { x, y + 0.9f, 0 } });
+    const auto first = static_cast<std::uint32_t>(3 * i);
+    geometry->triangles.push_back({ first, first + 1, first + 2 });
+    geometry->cellIds.push_back(static_cast<std::int64_t>(i));
   }
   return geometry;
 }

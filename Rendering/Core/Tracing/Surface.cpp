@@ -47,7 +47,7 @@ glm::dvec3 cornerNormal(const Geometry& geometry, std::size_t triangle, const Hi
   {
     return glm::dvec3(0.0);
   }
-  const glm::vec3* n = geometry.normals.data() + 3 * triangle;
+  const std::array<glm::vec3, 3> n = geometry.cornersOf(geometry.normals, triangle);
   return shading64::hrtInterpolate3(n[0], n[1], n[2], hit.u, hit.v);
 }
 
@@ -57,11 +57,11 @@ glm::vec4 scalarColor(const Geometry& geometry, std::size_t triangle, const Hit&
   const float u = static_cast<float>(hit.u), v = static_cast<float>(hit.v);
   if (geometry.colorSource == ColorSource::Corner)
   {
-    const glm::u8vec4* c = geometry.colors.data() + 3 * triangle;
+    const std::array<glm::u8vec4, 3> c = geometry.cornersOf(geometry.colors, triangle);
     return shading::hrtInterpolate4(glm::vec4(c[0]), glm::vec4(c[1]), glm::vec4(c[2]), u, v) /
       255.0f;
   }
-  const glm::vec2* c = geometry.coordinates.data() + 3 * triangle;
+  const std::array<glm::vec2, 3> c = geometry.cornersOf(geometry.coordinates, triangle);
   const int texel = shading::hrtLookupTexel(shading::hrtInterpolate2(c[0], c[1], c[2], u, v),
     geometry.lookupWidth, geometry.lookupHeight);
   return glm::vec4(geometry.lookup[static_cast<std::size_t>(texel)]) / 255.0f;
