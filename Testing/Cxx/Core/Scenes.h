@@ -158,7 +158,7 @@ public:
   {
     Hit best;
     this->forEachHit(ray, &Part::visibleToRays, [&](const Hit& hit) {
-      if (hit.t < best.t || (hit.t == best.t && hit.triangle < best.triangle))
+      if (hit.t < best.t || (hit.t == best.t && hit.triangle > best.triangle))
       {
         best = hit;
       }

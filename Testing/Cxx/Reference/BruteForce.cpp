@@ -152,7 +152,7 @@ std::vector<Pixel> bruteForce(const Snapshot& snapshot)
           {
             pixel = { triangle.id, t, u, v, kInfinity };
           }
-          else if (t < pixel.t)
+          else if (t <= pixel.t) // triangles come by rising number
           {
             pixel = { triangle.id, t, u, v, (pixel.t - t) / t };
           }

@@ -257,7 +257,7 @@ SoupHit TriangleSoup::nearest(const SoupRay& ray, const Filter& counts) const
     {
       continue;
     }
-    if (v.depth < best.t || (v.depth == best.t && triangle.id < best.triangle->id))
+    if (v.depth < best.t || (v.depth == best.t && triangle.id > best.triangle->id))
     {
       second = best.t;
       best = hitFrom(v, triangle);
@@ -299,9 +299,9 @@ Sighting TriangleSoup::look(const SoupRay& ray, const Filter& counts,
   double limit = std::numeric_limits<double>::infinity();
   for (const Candidate& candidate : candidates)
   {
-    if (candidate.hit && (!nearest || compareDepths(candidate.meeting, nearest->meeting) < 0))
+    if (candidate.hit && (!nearest || compareDepths(candidate.meeting, nearest->meeting) <= 0))
     {
-      nearest = &candidate; // candidates come by rising id: the smallest of equals stays
+      nearest = &candidate; // candidates come by rising id: the largest of equals stays
     }
     if (candidate.firm || (candidate.hit && isCovered(ray, candidate, candidates)))
     {
