@@ -1,6 +1,6 @@
 # Finds Embree 4 or 3 and gives it one name, HybridRayTracing::Embree, because distributions still
 # ship either. The difference in headers and calls is hidden by Rendering/Core/Structures/EmbreeShim.h,
-# which tests __has_include. Installed with the package: who links to it needs the same search.
+# which tests __has_include.
 find_package(embree 4 QUIET)
 if (NOT embree_FOUND)
   find_package(embree 3 QUIET)

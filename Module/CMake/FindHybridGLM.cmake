@@ -1,5 +1,5 @@
 # Finds GLM by its headers, because not every distribution ships its CMake package, and gives it the
-# name HybridRayTracing::GLM. Installed with the package: the core's headers include GLM's.
+# name HybridRayTracing::GLM.
 find_path(HybridGLM_INCLUDE_DIR glm/glm.hpp)
 include(FindPackageHandleStandardArgs)
 find_package_handle_standard_args(HybridGLM

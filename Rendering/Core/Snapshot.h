@@ -2,12 +2,13 @@
 // ray structures, the tracer and the tests. It is made from a vtkRenderer by Rendering/Scene and
 // holds neither VTK nor GL types, so that everything below it can be tested and fuzzed alone.
 //
-// Coordinates. A Geometry keeps its corners as floats relative to a double-precision origin of its
+// Coordinates. A Geometry keeps its vertices as floats relative to a double-precision origin of its
 // own; a Part places it in the world by a double matrix. No engine ever sees a large coordinate in
 // single precision: matrices are composed in double and only the product is rounded.
 #pragma once
 
 #include "Rendering/Core/Copies.h"
+#include "Rendering/Core/Geometry/Geometry.h"
 
 #include <glm/glm.hpp>
 
@@ -30,49 +31,6 @@ using TriangleId = std::uint32_t;
 // a cleared buffer (zero) means no hit; hence at most 2^32 - 1 triangles.
 inline constexpr TriangleId kNoTriangle = std::numeric_limits<TriangleId>::max();
 inline constexpr std::uint64_t kMaximumTriangles = kNoTriangle;
-
-// Where a part's colour comes from, as vtkMapper decides it.
-enum class ColorSource : std::uint8_t
-{
-  Property, // the material's own ambient and diffuse colours
-  Corner,   // Geometry::colors, interpolated over the triangle (equal corners: a cell's colour)
-  Lookup    // Geometry::coordinates, interpolated, then looked up in Geometry::lookup, nearest texel
-};
-
-// The triangles of one part in its local coordinates. Immutable once made: a changed mesh is a new
-// Geometry with a new version, which is all that a cache needs to compare.
-struct Geometry
-{
-  std::uint64_t version = 0; // unique over the process' life, never 0 for a real geometry
-
-  // Added to every corner to get the local (vtkPolyData) coordinate. Zero unless the data lie far
-  // from their own origin; then a multiple of a power of two, so that the subtraction is exact for
-  // float input.
-  glm::dvec3 origin{ 0.0 };
-
-  std::vector<glm::vec3> positions;      // 3 a triangle, relative to origin
-  std::vector<glm::vec3> normals;        // 3 a triangle, not normalised; empty: the face's normal
-  std::vector<glm::u8vec4> colors;       // 3 a triangle when colorSource == Corner, else empty
-  std::vector<glm::vec2> coordinates;    // 3 a triangle when colorSource == Lookup, else empty
-  std::vector<std::int64_t> cellIds;     // 1 a triangle: the vtkPolyData cell it came from
-  ColorSource colorSource = ColorSource::Property;
-
-  std::vector<glm::u8vec4> lookup;       // lookupWidth x lookupHeight texels, row by row
-  int lookupWidth = 0;
-  int lookupHeight = 0;
-
-  // All triangles lie in one plane: nothing of it can shadow the rest of it. See isFlat.
-  bool flat = false;
-
-  glm::vec3 boundsMin{ 0.0f };           // of positions; min > max when there is no triangle
-  glm::vec3 boundsMax{ -1.0f };
-
-  std::size_t triangleCount() const { return cellIds.size(); }
-};
-
-// Whether every position lies in the plane of the first triangle that has an area, but for the
-// rounding of the positions themselves.
-bool isFlat(const std::vector<glm::vec3>& positions);
 
 // One side's reflection terms of vtkProperty. Ambient and diffuse coefficients are kept apart from
 // the colours because scalar colours replace both colours but neither coefficient.

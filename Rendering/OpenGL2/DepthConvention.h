@@ -26,7 +26,8 @@ struct DepthConvention
   {
     return static_cast<float>(this->reversed ? 0.5 - 0.5 * z : 0.5 + 0.5 * z);
   }
-  GLenum compare() const { return this->reversed ? GL_GREATER : GL_LESS; }
+  // Of equal depths the last drawn stays, as in VTK.
+  GLenum compare() const { return this->reversed ? GL_GEQUAL : GL_LEQUAL; }
 
   // The matrix to draw with, from one for OpenGL's clip space (z from -w to w).
   glm::dmat4 drawMatrix(const glm::dmat4& clip) const;

@@ -14,25 +14,32 @@ namespace
 
 constexpr std::size_t kCornerBytes = sizeof(glm::vec4);
 
-// Corners a chunk while they are widened for upload: 1 MiB.
-constexpr std::size_t kChunk = 1 << 16;
+// Triangles a chunk while their corners are gathered for upload: about 1 MiB.
+constexpr std::size_t kChunk = 1 << 14;
 
-// Uploads a float table of corners: three components would need OpenGL 4.0, so a fourth is added, in
-// chunks rather than in a copy of the whole mesh.
-std::size_t uploadPadded(
-  TextureBuffer& table, std::size_t first, const std::vector<glm::vec3>& values, float w)
+// Uploads one texel for each corner of a geometry's triangles, in chunks rather than in a copy of
+// the whole mesh. `cornersOf(triangle)` gives three values, `texelOf` makes a texel of one. Returns
+// the bytes.
+template <class CornersOf, class TexelOf>
+std::size_t uploadCorners(TextureBuffer& table, std::size_t firstTriangle, std::size_t triangles,
+  CornersOf cornersOf, TexelOf texelOf)
 {
-  std::vector<glm::vec4> texels;
-  for (std::size_t start = 0; start < values.size(); start += kChunk)
+  using Texel = decltype(texelOf(cornersOf(0)[0]));
+  std::vector<Texel> texels;
+  for (std::size_t start = 0; start < triangles; start += kChunk)
   {
     texels.clear();
-    for (std::size_t i = start; i < std::min(start + kChunk, values.size()); ++i)
+    for (std::size_t i = start; i < std::min(start + kChunk, triangles); ++i)
     {
-      texels.emplace_back(values[i], w);
+      for (const auto& value : cornersOf(i))
+      {
+        texels.push_back(texelOf(value));
+      }
     }
-    table.uploadRange((first + start) * kCornerBytes, texels.data(), texels.size() * kCornerBytes);
+    table.uploadRange(
+      3 * (firstTriangle + start) * sizeof(Texel), texels.data(), texels.size() * sizeof(Texel));
   }
-  return values.size() * kCornerBytes;
+  return 3 * triangles * sizeof(Texel);
 }
 
 } // namespace
@@ -161,10 +168,11 @@ void GeometryBuffers::allocate(const Snapshot& snapshot)
   std::size_t normals = 0, colors = 0, coordinates = 0, lookups = 0;
   for (const Part& part : snapshot.parts)
   {
-    normals += part.geometry->normals.size();
-    colors += part.geometry->colors.size();
-    coordinates += part.geometry->coordinates.size();
-    lookups += part.geometry->lookup.size();
+    const Geometry& geometry = *part.geometry;
+    normals += geometry.normals.empty() ? 0 : 3 * geometry.triangleCount();
+    colors += geometry.colors.empty() ? 0 : 3 * geometry.triangleCount();
+    coordinates += geometry.coordinates.empty() ? 0 : 3 * geometry.triangleCount();
+    lookups += geometry.lookup.size();
   }
   // Bytes without data: only the storage is made; every part is uploaded into it afterwards.
   const auto reserve = [](TextureBuffer& table, std::size_t bytes) {
@@ -181,21 +189,30 @@ void GeometryBuffers::allocate(const Snapshot& snapshot)
 void GeometryBuffers::uploadPart(const Part& part, const Slot& slot)
 {
   const Geometry& geometry = *part.geometry;
-  const auto put = [this](TextureBuffer& table, std::size_t offset, const auto& values) {
-    const std::size_t size = sizeof(values[0]);
-    if (!values.empty())
+  const std::size_t triangles = geometry.triangleCount();
+  // Three components would need OpenGL 4.0, so a fourth is added.
+  this->UploadedBytes += uploadCorners(this->Positions, slot.firstTriangle, triangles,
+    [&](std::size_t i) { return geometry.cornerPositions(i); },
+    [](const glm::vec3& position) { return glm::vec4(position, 1.0f); });
+  const auto put = [&](TextureBuffer& table, std::int32_t first, const auto& attribute, auto texelOf) {
+    if (!attribute.empty())
     {
-      table.uploadRange(offset * size, values.data(), values.size() * size);
-      this->UploadedBytes += values.size() * size;
+      this->UploadedBytes += uploadCorners(table, static_cast<std::size_t>(first), triangles,
+        [&](std::size_t i) { return geometry.cornersOf(attribute, i); }, texelOf);
     }
   };
-  this->UploadedBytes +=
-    uploadPadded(this->Positions, 3ull * slot.firstTriangle, geometry.positions, 1.0f);
-  this->UploadedBytes +=
-    uploadPadded(this->Normals, 3ull * std::max(slot.normals, 0), geometry.normals, 0.0f);
-  put(this->Colors, 3ull * std::max(slot.colors, 0), geometry.colors);
-  put(this->Coordinates, 3ull * std::max(slot.coordinates, 0), geometry.coordinates);
-  put(this->Lookups, static_cast<std::size_t>(std::max(slot.lookup, 0)), geometry.lookup);
+  const auto asItIs = [](const auto& value) { return value; };
+  put(this->Normals, slot.normals, geometry.normals,
+    [](const glm::vec3& normal) { return glm::vec4(normal, 0.0f); });
+  put(this->Colors, slot.colors, geometry.colors, asItIs);
+  put(this->Coordinates, slot.coordinates, geometry.coordinates, asItIs);
+  if (!geometry.lookup.empty())
+  {
+    const std::size_t bytes = geometry.lookup.size() * sizeof(geometry.lookup[0]);
+    this->Lookups.uploadRange(
+      static_cast<std::size_t>(slot.lookup) * sizeof(geometry.lookup[0]), geometry.lookup.data(), bytes);
+    this->UploadedBytes += bytes;
+  }
 }
 
 //------------------------------------------------------------------------------

@@ -65,16 +65,16 @@ Box casterBounds(const Snapshot& snapshot, const std::vector<bool>& casters)
 bool litPlane(const Part& part, const Light& light, glm::dvec3& normal, glm::dvec3& point)
 {
   const glm::dmat4 toWorld = part.positionsToWorld();
-  const std::vector<glm::vec3>& p = part.geometry->positions;
-  const auto world = [&](std::size_t i) {
-    return glm::dvec3(toWorld * glm::dvec4(glm::dvec3(p[i]), 1.0));
+  const auto world = [&](const glm::vec3& position) {
+    return glm::dvec3(toWorld * glm::dvec4(glm::dvec3(position), 1.0));
   };
   // Without a triangle there is no plane: a zero normal has no lit side.
   normal = point = glm::dvec3(0.0);
-  for (std::size_t i = 0; i + 2 < p.size(); i += 3)
+  for (std::size_t i = 0; i < part.geometry->triangleCount(); ++i)
   {
-    point = world(i);
-    normal = glm::cross(world(i + 1) - point, world(i + 2) - point);
+    const std::array<glm::vec3, 3> corners = part.geometry->cornerPositions(i);
+    point = world(corners[0]);
+    normal = glm::cross(world(corners[1]) - point, world(corners[2]) - point);
     if (glm::dot(normal, normal) > 0.0)
     {
       break;

@@ -36,9 +36,8 @@ void appendPart(std::vector<glm::vec4>& table, const Part& part, const glm::dmat
   }
   appendTerms(table, part.material.front);
   appendTerms(table, part.material.back);
-  const bool scalarColors = part.geometry->colorSource != ColorSource::Property;
-  table.emplace_back(scalarColors ? 1.0f : 0.0f, part.material.lit ? 1.0f : 0.0f,
-    part.geometry->flat ? 0.0f : 1.0f, 0.0f);
+  table.emplace_back(
+    part.material.lit ? 1.0f : 0.0f, part.geometry->flat ? 0.0f : 1.0f, 0.0f, 0.0f);
 }
 
 void appendLight(std::vector<glm::vec4>& table, const Light& light, bool singleHeadlight,

@@ -17,7 +17,7 @@ namespace gl
 // Layout of the tables; the same names are handed to the shaders as #defines.
 //   part:   0-3 positions to view coordinates, 4-6 normals to view coordinates,
 //           7-9 front: (ambient colour, ambient) (diffuse colour, diffuse) (specular, power),
-//           10-12 back: the same, 13 (scalar colours, lit, folds, 0)
+//           10-12 back: the same, 13 (lit, folds, 0, 0)
 //   layout: (first triangle, normals, colours, coordinates) (lookup start, width, height, 0)
 //   light:  (position, kind) (direction, cosine of the cone) (colour, exponent)
 //           (attenuation, 0) (first shadow face, number of faces, 0, 0)

@@ -10,6 +10,8 @@
 #include "RayCaster_fs.h"
 #include "Shading.h"
 #include "ShadowLookup.h"
+#include "Surface.h"
+#include "SurfaceColors.h"
 
 #include <locale>
 #include <sstream>
@@ -38,6 +40,8 @@ std::string definitions()
   text << "#define HRT_SHADOW_FACE(i) texelFetch(shadowFaces, i)\n";
   text << "#define HRT_SHADOW_DEPTH(place) texelFetch(shadowAtlas, place, 0).r\n";
   text << "#define HRT_SHADOW_CLEAR shadowClearDepth\n";
+  // One reciprocal root; in C++, where it matters, the exact quotient.
+  text << "#define HRT_DIRECTION(v) normalize(v)\n";
   return text.str();
 }
 
@@ -55,7 +59,9 @@ const std::string& rayCasterSource()
 {
   static const std::string source = [] {
     std::string text = RayCaster_fs;
-    vtkShaderProgram::Substitute(text, "//HRT::Shading", definitions() + Shading + ShadowLookup);
+    vtkShaderProgram::Substitute(
+      text, "//HRT::Shading", definitions() + Shading + Surface + ShadowLookup);
+    vtkShaderProgram::Substitute(text, "//HRT::SurfaceColors", SurfaceColors);
     return text;
   }();
   return source;

@@ -20,7 +20,8 @@ namespace scene
 namespace
 {
 
-enum class Attachment
+// What the mapper's colours are attached to.
+enum class Mapped
 {
   Points,
   Cells,
@@ -28,32 +29,32 @@ enum class Attachment
 };
 
 //------------------------------------------------------------------------------
-Attachment attachmentOf(vtkMapper* mapper, vtkPolyData* input)
+Mapped whatIsMapped(vtkMapper* mapper, vtkPolyData* input)
 {
   const int mode = mapper->GetScalarMode();
   if (mode == VTK_SCALAR_MODE_USE_FIELD_DATA && mapper->GetFieldDataTupleId() > -1)
   {
-    return Attachment::OneTuple;
+    return Mapped::OneTuple;
   }
   if (mode == VTK_SCALAR_MODE_USE_POINT_FIELD_DATA)
   {
-    return Attachment::Points;
+    return Mapped::Points;
   }
   const bool cells = mode == VTK_SCALAR_MODE_USE_CELL_DATA ||
     mode == VTK_SCALAR_MODE_USE_CELL_FIELD_DATA || mode == VTK_SCALAR_MODE_USE_FIELD_DATA;
-  return cells || !input->GetPointData()->GetScalars() ? Attachment::Cells : Attachment::Points;
+  return cells || !input->GetPointData()->GetScalars() ? Mapped::Cells : Mapped::Points;
 }
 
 //------------------------------------------------------------------------------
-vtkIdType tuplesNeeded(Attachment attachment, vtkMapper* mapper, vtkPolyData* input)
+vtkIdType tuplesNeeded(Mapped mapped, vtkMapper* mapper, vtkPolyData* input)
 {
-  switch (attachment)
+  switch (mapped)
   {
-    case Attachment::Points:
+    case Mapped::Points:
       return input->GetNumberOfPoints();
-    case Attachment::Cells:
+    case Mapped::Cells:
       return input->GetNumberOfCells();
-    case Attachment::OneTuple:
+    case Mapped::OneTuple:
       return mapper->GetFieldDataTupleId() + 1;
   }
   return 0;
@@ -80,24 +81,30 @@ glm::u8vec4 readColor(vtkUnsignedCharArray* colors, vtkIdType tuple)
 
 //------------------------------------------------------------------------------
 bool writeCorners(vtkUnsignedCharArray* colors, vtkMapper* mapper, vtkPolyData* input,
-  const Triangles& triangles, Geometry& geometry)
+  const VertexPoints& pointOf, Geometry& geometry)
 {
-  const Attachment attachment = attachmentOf(mapper, input);
-  if (colors->GetNumberOfTuples() < tuplesNeeded(attachment, mapper, input))
+  const Mapped mapped = whatIsMapped(mapper, input);
+  if (colors->GetNumberOfTuples() < tuplesNeeded(mapped, mapper, input))
   {
     return false;
   }
   geometry.colorSource = ColorSource::Corner;
-  geometry.colors.reserve(3 * triangles.size());
-  for (const SourceTriangle& triangle : triangles)
+  std::vector<glm::u8vec4>& values = geometry.colors.values;
+  if (mapped == Mapped::Points)
   {
-    for (vtkIdType point : triangle.points)
+    values.reserve(pointOf.size());
+    for (const PointNumber point : pointOf)
     {
-      const vtkIdType tuple = attachment == Attachment::Points ? point
-        : attachment == Attachment::Cells                      ? triangle.cell
-                                                               : mapper->GetFieldDataTupleId();
-      geometry.colors.push_back(readColor(colors, tuple));
+      values.push_back(readColor(colors, point));
     }
+    return true;
+  }
+  geometry.colors.attachment = Attachment::Triangles;
+  values.reserve(geometry.triangleCount());
+  for (std::size_t i = 0; i < geometry.triangleCount(); ++i)
+  {
+    values.push_back(readColor(
+      colors, mapped == Mapped::Cells ? geometry.cellIds[i] : mapper->GetFieldDataTupleId()));
   }
   return true;
 }
@@ -117,7 +124,7 @@ glm::vec2 readCoordinates(vtkFloatArray* coordinates, vtkIdType point)
 // Scalars are interpolated before they are mapped: coordinates at the points into a table of
 // texels.
 bool writeLookup(vtkFloatArray* coordinates, vtkImageData* table, vtkPolyData* input,
-  const Triangles& triangles, Geometry& geometry)
+  const VertexPoints& pointOf, Geometry& geometry)
 {
   auto* texels = vtkUnsignedCharArray::SafeDownCast(table->GetPointData()->GetScalars());
   const int* size = table->GetDimensions();
@@ -136,13 +143,10 @@ bool writeLookup(vtkFloatArray* coordinates, vtkImageData* table, vtkPolyData* i
   {
     geometry.lookup.push_back(readColor(texels, i));
   }
-  geometry.coordinates.reserve(3 * triangles.size());
-  for (const SourceTriangle& triangle : triangles)
+  geometry.coordinates.values.reserve(pointOf.size());
+  for (const PointNumber point : pointOf)
   {
-    for (vtkIdType point : triangle.points)
-    {
-      geometry.coordinates.push_back(readCoordinates(coordinates, point));
-    }
+    geometry.coordinates.values.push_back(readCoordinates(coordinates, point));
   }
   return true;
 }
@@ -151,7 +155,7 @@ bool writeLookup(vtkFloatArray* coordinates, vtkImageData* table, vtkPolyData* i
 
 //------------------------------------------------------------------------------
 bool writeColors(
-  vtkMapper* mapper, vtkPolyData* input, const Triangles& triangles, Geometry& geometry)
+  vtkMapper* mapper, vtkPolyData* input, const VertexPoints& pointOf, Geometry& geometry)
 {
   // Opacity 1: the property's opacity is multiplied in when shading, as in VTK's shaders.
   mapper->MapScalars(input, 1.0);
@@ -159,11 +163,11 @@ bool writeColors(
   vtkFloatArray* coordinates = mapper->GetColorCoordinates();
   if (colors && colors->GetNumberOfTuples() > 0)
   {
-    return writeCorners(colors, mapper, input, triangles, geometry);
+    return writeCorners(colors, mapper, input, pointOf, geometry);
   }
   if (coordinates && mapper->GetColorTextureMap())
   {
-    return writeLookup(coordinates, mapper->GetColorTextureMap(), input, triangles, geometry);
+    return writeLookup(coordinates, mapper->GetColorTextureMap(), input, pointOf, geometry);
   }
   geometry.colorSource = ColorSource::Property;
   return true;

@@ -3,8 +3,8 @@
 // and what it is attached to is read here.
 #pragma once
 
-#include "Rendering/Core/Snapshot.h"
-#include "Rendering/Scene/TriangleExtraction.h"
+#include "Rendering/Core/Geometry/Geometry.h"
+#include "Rendering/Scene/VertexExtraction.h"
 
 class vtkMapper;
 class vtkPolyData;
@@ -15,10 +15,10 @@ namespace scene
 {
 
 // Lets the mapper map its scalars and fills colorSource and the colours, or the coordinates and the
-// look-up table, of the geometry. False when the mapper's colours do not cover the input, in which
-// case the colour is the property's.
+// look-up table, of a geometry that has its vertices. False when the mapper's colours do not cover
+// the input, in which case the colour is the property's.
 bool writeColors(
-  vtkMapper* mapper, vtkPolyData* input, const Triangles& triangles, Geometry& geometry);
+  vtkMapper* mapper, vtkPolyData* input, const VertexPoints& pointOf, Geometry& geometry);
 
 } // namespace scene
 } // namespace hrt

@@ -29,9 +29,9 @@ std::uint64_t nextVersion()
 bool sameContent(const Geometry& a, const Geometry& b)
 {
   return a.origin == b.origin && a.colorSource == b.colorSource && a.lookupWidth == b.lookupWidth &&
-    a.lookupHeight == b.lookupHeight && a.cellIds == b.cellIds && a.positions == b.positions &&
-    a.normals == b.normals && a.colors == b.colors && a.coordinates == b.coordinates &&
-    a.lookup == b.lookup;
+    a.lookupHeight == b.lookupHeight && a.triangles == b.triangles && a.cellIds == b.cellIds &&
+    a.positions == b.positions && a.normals == b.normals && a.colors == b.colors &&
+    a.coordinates == b.coordinates && a.lookup == b.lookup;
 }
 
 //------------------------------------------------------------------------------
@@ -43,10 +43,17 @@ bool sameProblems(const Extraction& a, const Extraction& b)
 //------------------------------------------------------------------------------
 void nameOriginalCells(vtkDataArray* originals, Geometry& geometry)
 {
-  for (std::int64_t& cell : geometry.cellIds)
+  if (!originals)
   {
-    cell = originals ? static_cast<std::int64_t>(originals->GetComponent(cell, 0)) : cell;
+    return;
   }
+  CellIds named;
+  named.reserve(geometry.cellIds.size());
+  for (std::size_t i = 0; i < geometry.cellIds.size(); ++i)
+  {
+    named.push_back(static_cast<std::int64_t>(originals->GetComponent(geometry.cellIds[i], 0)));
+  }
+  geometry.cellIds = named;
 }
 
 } // anonymous namespace
@@ -65,12 +72,10 @@ ExtractionPointer GeometryCache::extract(const GeometrySource& source, const Ext
   auto geometry = std::make_shared<Geometry>();
   auto extraction = std::make_shared<Extraction>();
   TriangleReport& report = extraction->report;
-  const Points points = readPoints(source.input);
-  Triangles triangles = triangulate(source.input, points, report);
-  writePositions(triangles, points, *geometry, report);
-  writeNormals(source.input, source.flat, triangles, *geometry, report);
+  const VertexPoints pointOf = writeVertices(source.input, source.flat,
+    triangulate(source.input, readPoints(source.input), report), *geometry, report);
   extraction->colorsComplete =
-    source.plain || writeColors(source.mapper, source.input, triangles, *geometry);
+    source.plain || writeColors(source.mapper, source.input, pointOf, *geometry);
   nameOriginalCells(source.originalCells, *geometry);
 
   if (before && sameContent(*before->geometry, *geometry))

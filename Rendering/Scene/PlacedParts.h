@@ -19,7 +19,7 @@ enum class MatrixState
 // Divides the matrix by w. The result is for use when it is Good.
 MatrixState normaliseMatrix(glm::dmat4& localToWorld);
 
-// Hands out triangle numbers up to a limit.
+// Counts triangles up to as many as can be numbered.
 class TriangleNumbers
 {
 public:
@@ -29,18 +29,15 @@ public:
   }
 
   // False, and nothing taken, when so many do not fit any more.
-  bool take(std::uint64_t count, TriangleId& first)
+  bool take(std::uint64_t count)
   {
     if (count > this->Limit - this->Taken)
     {
       return false;
     }
-    first = static_cast<TriangleId>(this->Taken);
     this->Taken += count;
     return true;
   }
-
-  TriangleId taken() const { return static_cast<TriangleId>(this->Taken); }
 
 private:
   std::uint64_t Limit;

@@ -73,6 +73,45 @@ struct SceneReader::Draft
   SceneBox box;
   std::uint64_t lastPath = 0; // that was given a number
 
+  // A part with its prop among the renderer's. Those with copies come last in the snapshot: for all
+  // others a triangle's number is its place in the GPU's buffers too.
+  struct Placed
+  {
+    Part part;
+    const vtkProp* viewProp;
+  };
+  std::vector<Placed> copied;
+
+  void add(const ActorPath& path, const Part& part)
+  {
+    Part own = part;
+    own.source.prop = this->numberOf(path);
+    if (part.copies)
+    {
+      this->copied.push_back({ own, path.props.front() });
+      return;
+    }
+    this->frame.snapshot->parts.push_back(own);
+    this->viewProps.push_back(path.props.front());
+  }
+
+  void numberTriangles()
+  {
+    std::vector<Part>& parts = this->frame.snapshot->parts;
+    for (const Placed& last : this->copied)
+    {
+      parts.push_back(last.part);
+      this->viewProps.push_back(last.viewProp);
+    }
+    std::uint64_t next = 0;
+    for (Part& part : parts)
+    {
+      part.firstTriangle = static_cast<TriangleId>(next);
+      next += part.triangleCount();
+    }
+    this->frame.snapshot->triangleCount = static_cast<TriangleId>(next);
+  }
+
   // Of a path that has parts. Those of one path follow each other.
   std::uint32_t numberOf(const ActorPath& path)
   {
@@ -170,17 +209,14 @@ LeftToVTK SceneReader::addPart(const ActorPath& path, const Part& part, Draft& d
         ": its bounds in the world are beyond 1.844e18; left out of ray tracing");
     return LeftToVTK::OutOfRange;
   }
-  Part numbered = part;
-  if (!draft.numbers.take(part.triangleCount(), numbered.firstTriangle))
+  if (!draft.numbers.take(part.triangleCount()))
   {
     this->Errors.addState(path.key,
       nameOf(path.actor) +
         ": the scene has more than 2^32 - 1 triangles with this part's; left out of ray tracing");
     return LeftToVTK::TooManyTriangles;
   }
-  numbered.source.prop = draft.numberOf(path);
-  draft.frame.snapshot->parts.push_back(std::move(numbered));
-  draft.viewProps.push_back(path.props.front());
+  draft.add(path, part);
   return LeftToVTK::No;
 }
 
@@ -387,8 +423,8 @@ Frame SceneReader::read(
   {
     this->addPath(path, draft);
   }
+  draft.numberTriangles();
   draft.keepAssembliesTogether();
-  snapshot.triangleCount = draft.numbers.taken();
   snapshot.camera = extractCamera(renderer, width, height);
   snapshot.background = extractBackground(renderer, snapshot.camera);
   this->addLights(renderer, settings, snapshot);

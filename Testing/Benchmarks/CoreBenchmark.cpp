@@ -99,7 +99,7 @@ void Scene::makeSecondary(const Ray& primary, const glm::dvec3& light)
   {
     return;
   }
-  const glm::vec3* p = this->mesh->positions.data() + 3 * std::size_t(hit.triangle);
+  const std::array<glm::vec3, 3> p = this->mesh->cornerPositions(hit.triangle);
   const glm::dvec3 a(p[0]), b(p[1]), c(p[2]);
   Ray ray;
   ray.originTriangle = hit.triangle;
@@ -129,12 +129,9 @@ public:
     auto* points = static_cast<glm::vec3*>(rtcSetNewGeometryBuffer(geometry,
       RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, sizeof(glm::vec3), mesh.positions.size()));
     std::copy(mesh.positions.begin(), mesh.positions.end(), points);
-    auto* indices = static_cast<std::uint32_t*>(rtcSetNewGeometryBuffer(geometry,
+    auto* triangles = static_cast<std::array<std::uint32_t, 3>*>(rtcSetNewGeometryBuffer(geometry,
       RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 12, mesh.triangleCount()));
-    for (std::size_t i = 0; i < mesh.positions.size(); ++i)
-    {
-      indices[i] = static_cast<std::uint32_t>(i);
-    }
+    std::copy(mesh.triangles.begin(), mesh.triangles.end(), triangles);
     rtcCommitGeometry(geometry);
     rtcAttachGeometry(this->Scene, geometry);
     rtcReleaseGeometry(geometry);
@@ -329,6 +326,19 @@ void buildNaive(benchmark::State& state, const Geometry& mesh)
 
 // --- The table --------------------------------------------------------------------------------------
 
+// Whether a run ended with an error. google-benchmark renamed the member with release 1.8: the second
+// form stands for the older ones, and is chosen only where the first cannot be compiled.
+template <class Run>
+auto failed(const Run& run, int) -> decltype(static_cast<bool>(run.skipped))
+{
+  return static_cast<bool>(run.skipped);
+}
+template <class Run>
+bool failed(const Run& run, long)
+{
+  return run.error_occurred;
+}
+
 // Keeps the shortest time of each benchmark. Processor time, which waiting for a core does not lengthen,
 // for one thread; the clock's for more.
 class Fastest : public benchmark::BenchmarkReporter
@@ -344,7 +354,7 @@ public:
   {
     for (const Run& run : runs)
     {
-      if (run.run_type == Run::RT_Iteration && !run.error_occurred)
+      if (run.run_type == Run::RT_Iteration && !failed(run, 0))
       {
         const bool several = run.counters.find("threads") != run.counters.end();
         const double total = several ? run.real_accumulated_time : run.cpu_accumulated_time;

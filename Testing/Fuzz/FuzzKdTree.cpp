@@ -73,7 +73,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   scenes::addPart(s, scenes::makeGeometry(triangles(bytes)));
   KdTreeStructure tree;
   tree.update(s);
-  const std::vector<glm::vec3>& corners = s.parts[0].geometry->positions;
+  const std::vector<glm::vec3> corners = scenes::cornersOf(*s.parts[0].geometry);
   for (unsigned int i = 0; i < kRays; ++i)
   {
     const auto corner = [&] {

@@ -5,8 +5,10 @@
 #include "Rendering/Core/Geometry/Coordinates.h"
 #include "Rendering/Core/Snapshot.h"
 
+#include <algorithm>
 #include <cmath>
 #include <string>
+#include <vector>
 
 namespace hrt
 {
@@ -44,31 +46,54 @@ bool areFinite(const Values& values)
   return true;
 }
 
+// Whether an attribute has as many values as it is attached to.
+template <class T>
+bool isComplete(const Geometry& g, const Attribute<T>& attribute)
+{
+  return attribute.values.size() ==
+    (attribute.attachment == Attachment::Vertices ? g.vertexCount() : g.triangleCount());
+}
+
 // The first promise that a geometry breaks, in words; empty: none.
 inline std::string broken(const Geometry& g)
 {
-  const std::size_t corners = 3 * g.triangleCount();
   const bool byCorner = g.colorSource == ColorSource::Corner;
   const bool byLookup = g.colorSource == ColorSource::Lookup;
   if (g.version == 0)
   {
     return "no version";
   }
-  if (g.positions.size() != corners)
+  if (g.cellIds.size() != g.triangleCount())
   {
-    return "positions and cell ids differ in number";
+    return "triangles and cell ids differ in number";
   }
-  if (!g.normals.empty() && g.normals.size() != corners)
+  std::vector<bool> used(g.vertexCount(), false);
+  for (const auto& triangle : g.triangles)
   {
-    return "normals and positions differ in number";
+    for (const std::uint32_t vertex : triangle)
+    {
+      if (vertex >= g.vertexCount())
+      {
+        return "a triangle names a vertex that does not exist";
+      }
+      used[vertex] = true;
+    }
   }
-  if (g.colors.size() != (byCorner ? corners : 0))
+  if (std::find(used.begin(), used.end(), false) != used.end())
   {
-    return "colours and positions differ in number";
+    return "no triangle uses a vertex";
   }
-  if (g.coordinates.size() != (byLookup ? corners : 0))
+  if (!g.normals.empty() && !isComplete(g, g.normals))
   {
-    return "coordinates and positions differ in number";
+    return "not all have normals";
+  }
+  if (byCorner ? !isComplete(g, g.colors) : !g.colors.empty())
+  {
+    return "there are too few or too many colours";
+  }
+  if (byLookup ? !isComplete(g, g.coordinates) : !g.coordinates.empty())
+  {
+    return "there are too few or too many coordinates";
   }
   if (byLookup &&
     (g.lookupWidth <= 0 || g.lookupHeight <= 0 ||
@@ -76,7 +101,7 @@ inline std::string broken(const Geometry& g)
   {
     return "the lookup table has not its size";
   }
-  if (!areFinite(g.positions) || !areFinite(g.normals) || !areFinite(g.coordinates) ||
+  if (!areFinite(g.positions) || !areFinite(g.normals.values) || !areFinite(g.coordinates.values) ||
     !isFinite(g.origin))
   {
     return "a position, normal, coordinate or origin is not finite";

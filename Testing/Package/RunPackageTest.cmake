@@ -22,6 +22,18 @@ step("install" "${CMAKE_COMMAND}" --install "${BUILD_TREE}" --config "${BUILD_TY
   --prefix "${WORK}/made")
 file(RENAME "${WORK}/made" "${WORK}/prefix")
 
+# A header that is installed is a promise: these are all that a program needs. The others name types of
+# libraries that a consumer has no headers of.
+set(expected_headers
+  vtkHybridBARTImporter.h vtkHybridIOBARTModule.h vtkHybridMaterial.h vtkHybridRayTracingPass.h
+  vtkHybridRenderingOpenGL2Module.h vtkHybridRenderingSceneModule.h vtkHybridVersion.h)
+list(TRANSFORM expected_headers PREPEND "HybridRayTracing/")
+file(GLOB_RECURSE headers RELATIVE "${WORK}/prefix/include" "${WORK}/prefix/include/*")
+if (NOT headers STREQUAL expected_headers)
+  message(FATAL_ERROR "package test: the installed headers are\n  ${headers}\nand should be\n  "
+    "${expected_headers}")
+endif ()
+
 step("configure the outside project" "${CMAKE_COMMAND}" -S "${CONSUMER}" -B "${WORK}/build"
   -G "${GENERATOR}" "-DCMAKE_BUILD_TYPE=${BUILD_TYPE}" "-DCMAKE_PREFIX_PATH=${WORK}/prefix"
   "-DVTK_DIR=${VTK_DIR}" "-DHRT_EXPECTED_VERSION=${VERSION}")

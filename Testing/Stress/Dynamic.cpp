@@ -85,7 +85,7 @@ enum class Move
 
 std::shared_ptr<Geometry> deformed(const Geometry& geometry, scenes::Random& random)
 {
-  std::vector<glm::vec3> positions = geometry.positions;
+  std::vector<glm::vec3> positions = scenes::cornersOf(geometry);
   const glm::vec3 by(random.inBox(0.2));
   for (glm::vec3& p : positions)
   {

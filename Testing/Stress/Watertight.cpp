@@ -49,7 +49,7 @@ ClosedMesh placedSphere(const glm::dvec3& centre)
 // the surface stays closed.
 ClosedMesh sphereInFarFloats()
 {
-  std::vector<glm::vec3> positions = scenes::sphere(kColumns, kRows)->positions;
+  std::vector<glm::vec3> positions = scenes::cornersOf(*scenes::sphere(kColumns, kRows));
   for (glm::vec3& p : positions)
   {
     p = glm::vec3(kRadius * glm::dvec3(p) + kFarAway);

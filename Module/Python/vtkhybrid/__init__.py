@@ -12,19 +12,20 @@ import importlib as _importlib
 import importlib.util as _importlib_util
 import json as _json
 
+from ._version import __version__, vtk_package as _vtk_package
+
 # VTK registers its OpenGL classes with its object factory when this module is imported; without it
 # vtkRenderWindow() would be an abstract window that draws nothing.
-import vtkmodules.vtkRenderingOpenGL2  # noqa: F401  (imported for its effect)
+_importlib.import_module(f"{_vtk_package}.vtkRenderingOpenGL2")
 
 # The same holds for interactor styles and text, which a script uses without naming their modules. A
 # VTK built without them is good enough for us.
-for _name in ("vtkmodules.vtkInteractionStyle", "vtkmodules.vtkRenderingFreeType"):
+for _name in (f"{_vtk_package}.vtkInteractionStyle", f"{_vtk_package}.vtkRenderingFreeType"):
     if _importlib_util.find_spec(_name) is not None:
         _importlib.import_module(_name)
 del _name
 
 from . import vtkHybridRenderingOpenGL2 as _opengl2
-from ._version import __version__
 from .vtkHybridIOBART import vtkHybridBARTImporter
 from .vtkHybridRenderingScene import vtkHybridMaterial
 
@@ -60,7 +61,7 @@ def statistics(rt):
     if not counters:
         raise RuntimeError(
             "no frame has been rendered with this pass; was vtkRenderWindow() made before vtkhybrid "
-            "or vtkmodules.vtkRenderingOpenGL2 was imported?"
+            f"or {_vtk_package}.vtkRenderingOpenGL2 was imported?"
         )
     return counters
 
@@ -115,7 +116,8 @@ def buffer(rt, name):
     The array is a view of VTK's memory, nothing is copied: take a copy() to keep it longer than the
     next frame. ValueError: there is no such buffer. RuntimeError: it was not asked for, or not
     rendered yet."""
-    from vtkmodules.util.numpy_support import vtk_to_numpy  # numpy is needed here only
+    # numpy is needed here only
+    numpy_support = _importlib.import_module(f"{_vtk_package}.util.numpy_support")
 
     _check_name(rt, name)
     if name not in rt.GetBuffers():
@@ -126,4 +128,4 @@ def buffer(rt, name):
     width, height, _ = image.GetDimensions()
     components = array.GetNumberOfComponents()
     shape = (height, width) if components == 1 else (height, width, components)
-    return vtk_to_numpy(array).reshape(shape)
+    return numpy_support.vtk_to_numpy(array).reshape(shape)

@@ -53,7 +53,7 @@ glm::dmat4 positionsToScene(
 Corners sceneCorners(
   const Geometry& geometry, const glm::dmat4& positionsToScene, std::size_t triangle)
 {
-  return sceneCorners(geometry.positions.data() + 3 * triangle, positionsToScene);
+  return sceneCorners(geometry.cornerPositions(triangle).data(), positionsToScene);
 }
 
 Corners sceneCorners(const glm::vec3* positions, const glm::dmat4& positionsToScene)

@@ -1,5 +1,6 @@
-// Compiles the shared shading source (Shading.glsl) as C++: hrt::shading in single precision, as
-// the GPU evaluates it, and hrt::shading64 in double, for references. Nothing is written twice.
+// Compiles the shared sources (Shading.glsl, Surface.glsl) as C++: hrt::shading in single precision, as
+// the GPU evaluates them, and hrt::shading64 in double, for geometry and references. Nothing is written
+// twice.
 #pragma once
 
 #include "Rendering/Core/Snapshot.h"
@@ -7,6 +8,7 @@
 #include <glm/glm.hpp>
 
 #define HRT_FUNCTION inline
+#define HRT_DIRECTION(v) ((v) / length(v))
 
 namespace hrt
 {
@@ -30,6 +32,7 @@ using glm::pow;
 using glm::reflect;
 using glm::sign;
 #include "Rendering/Core/Shading/Shading.glsl"
+#include "Rendering/Core/Surface/Surface.glsl"
 }
 
 namespace shading64
@@ -50,7 +53,9 @@ using glm::pow;
 using glm::reflect;
 using glm::sign;
 #include "Rendering/Core/Shading/Shading.glsl"
+#include "Rendering/Core/Surface/Surface.glsl"
 }
 } // namespace hrt
 
 #undef HRT_FUNCTION
+#undef HRT_DIRECTION

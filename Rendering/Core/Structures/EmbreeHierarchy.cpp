@@ -131,10 +131,10 @@ void Hierarchy::fit()
   this->Tree.fit(this->Box.padding(), [&](std::uint32_t block) { return boxes[block]; });
 }
 
-bool Hierarchy::refit(const std::vector<glm::vec3>& positions)
+bool Hierarchy::refit(const Geometry& geometry)
 {
   if (!this->Complete ||
-    !std::all_of(positions.begin(), positions.end(),
+    !std::all_of(geometry.positions.begin(), geometry.positions.end(),
       [](const glm::vec3& position) { return hrt::isAdmissible(position); }))
   {
     return false;
@@ -145,8 +145,7 @@ bool Hierarchy::refit(const std::vector<glm::vec3>& positions)
     {
       const auto& triangle = this->Blocks[block].triangle;
       const bool used = triangle[lane] != kNoTriangle;
-      const glm::vec3* const corner = &positions[3 * std::size_t(triangle[used ? lane : 0])];
-      this->setLane(block, lane, { corner[0], corner[1], corner[2] });
+      this->setLane(block, lane, geometry.cornerPositions(triangle[used ? lane : 0]));
     }
   }
   this->fit();

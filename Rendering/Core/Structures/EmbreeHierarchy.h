@@ -41,10 +41,10 @@ public:
   const TraversalBox& box() const { return this->Box; }
   const EntryBox& entry() const { return this->Entry; }
 
-  // Moves the triangles of a hierarchy of one geometry to that geometry's new positions. False when
-  // it holds not all of them, or has become so much worse than it was when built, that it is better
-  // built anew.
-  bool refit(const std::vector<glm::vec3>& positions);
+  // Moves the triangles of a hierarchy of one geometry to where another one of as many triangles has
+  // them. False when it holds not all of them, or has become so much worse than it was when built,
+  // that it is better built anew.
+  bool refit(const Geometry& geometry);
   // The same for merged parts that have moved: `placements` map each member's own positions to the
   // hierarchy's coordinates.
   bool refit(const std::vector<glm::dmat4>& placements);

@@ -24,10 +24,9 @@ struct Triangles
     for (std::size_t i = 0; i < part.geometry->triangleCount(); ++i)
     {
       const Corners c = sceneCorners(*part.geometry, toAnchor, i);
-      const glm::vec3* const corner = part.geometry->positions.data() + 3 * i;
       this->placed.push_back({ { glm::vec3(c.a), glm::vec3(c.b), glm::vec3(c.c) }, member,
         static_cast<std::uint32_t>(i) });
-      this->positions.push_back({ corner[0], corner[1], corner[2] });
+      this->positions.push_back(part.geometry->cornerPositions(i));
     }
   }
 };

@@ -22,11 +22,11 @@ struct Member
   bool castsShadow = false;
 };
 
-// True when the hit becomes the best. The order of traversal must not show: of equal hits the smallest
-// number wins.
+// True when the hit becomes the best. The order of traversal must not show: of equal hits the largest
+// number wins, which is drawn last.
 inline bool offer(const Hit& hit, Hit& best)
 {
-  if (hit.t > best.t || (hit.t == best.t && hit.triangle >= best.triangle))
+  if (hit.t > best.t || (hit.t == best.t && hit.triangle <= best.triangle))
   {
     return false;
   }

@@ -28,8 +28,7 @@ std::vector<SourceTriangle> localTriangles(const Geometry& geometry)
   std::vector<SourceTriangle> triangles(geometry.triangleCount());
   for (std::size_t i = 0; i < triangles.size(); ++i)
   {
-    const glm::vec3* const corner = geometry.positions.data() + 3 * i;
-    triangles[i] = { { corner[0], corner[1], corner[2] }, 0, static_cast<std::uint32_t>(i) };
+    triangles[i] = { geometry.cornerPositions(i), 0, static_cast<std::uint32_t>(i) };
   }
   return triangles;
 }
@@ -93,7 +92,7 @@ struct EmbreeStructure::Implementation
     }
     const std::shared_ptr<embree::Hierarchy> own = old->second;
     this->owns.erase(old);
-    if (!own->refit(part.geometry->positions))
+    if (!own->refit(*part.geometry))
     {
       return false;
     }

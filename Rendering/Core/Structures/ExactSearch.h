@@ -1,5 +1,5 @@
 // What every structure does with the triangles that its hierarchy proposes: the exact test, the origin
-// triangle left out, and of equal hits the smallest number, so that the order of proposals does not show.
+// triangle left out, and of equal hits the largest number, so that the order of proposals does not show.
 #pragma once
 
 #include "Rendering/Core/Geometry/TriangleTest.h"
@@ -64,7 +64,7 @@ public:
       return false;
     }
     const TriangleId id = placed.firstTriangle + triangle;
-    if (hit.t < this->Best.t || (hit.t == this->Best.t && id < this->Best.triangle))
+    if (hit.t < this->Best.t || (hit.t == this->Best.t && id > this->Best.triangle))
     {
       this->Best = { id, hit.t, hit.u, hit.v };
     }

@@ -14,6 +14,7 @@
 #include <tbb/parallel_invoke.h>
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cmath>
 #include <cstdint>
@@ -37,7 +38,7 @@ class KdTreeBuilder
 {
 public:
   KdTreeBuilder(const Geometry& geometry, const KdTreeBuildControl& control)
-    : Corners(geometry.positions.data())
+    : Mesh(geometry)
     , Count(static_cast<std::uint32_t>(geometry.triangleCount()))
     , DepthLimit(kdcost::depthLimit(geometry.triangleCount()))
     , Control(control)
@@ -82,7 +83,7 @@ private:
   }
   void advance(double share);
 
-  const glm::vec3* Corners;
+  const Geometry& Mesh;
   std::uint32_t Count;
   int DepthLimit;
   const KdTreeBuildControl& Control;
@@ -111,7 +112,7 @@ KdTreeBuilder::OwnedCell KdTreeBuilder::rootCell() const
   admitted.reserve(this->Count);
   for (std::uint32_t i = 0; i < this->Count; ++i)
   {
-    const glm::vec3* c = this->Corners + 3 * std::size_t(i);
+    const std::array<glm::vec3, 3> c = this->Mesh.cornerPositions(i);
     // Others cannot be ordered and clipped. The scene's door refuses them; a snapshot made otherwise
     // must do no harm.
     if (isAdmissible(c[0]) && isAdmissible(c[1]) && isAdmissible(c[2]))
@@ -129,7 +130,7 @@ KdTreeBuilder::OwnedCell KdTreeBuilder::rootCell() const
     KdEventList& events = cell.events[axis];
     for (const std::uint32_t i : admitted)
     {
-      const glm::vec3* c = this->Corners + 3 * std::size_t(i);
+      const std::array<glm::vec3, 3> c = this->Mesh.cornerPositions(i);
       const float a = c[0][axis] + 0.0f, b = c[1][axis] + 0.0f, d = c[2][axis] + 0.0f;
       events.add(std::min(a, std::min(b, d)), std::max(a, std::max(b, d)), i);
     }
@@ -166,7 +167,7 @@ void KdTreeBuilder::buildBranch(KdBranch& branch, OwnedCell cell, double share)
   {
     // Not the thread's own workspace: while the axes are waited for, the thread may finish a piece.
     KdWorkspace workspace(this->Count);
-    splitCell(cell, split, this->Corners, workspace, below, above,
+    splitCell(cell, split, this->Mesh, workspace, below, above,
       [](const auto& distribute) { tbb::parallel_for(0, 3, distribute); });
   }
   cell.memory.reset();
@@ -220,7 +221,7 @@ void KdTreeBuilder::buildPiece(
     below.events[axis].events = workspace.arena.allocate(2 * std::size_t(split.below) + 1);
     above.events[axis].events = workspace.arena.allocate(2 * std::size_t(split.above) + 1);
   }
-  splitCell(cell, split, this->Corners, workspace, below, above, [](const auto& distribute) {
+  splitCell(cell, split, this->Mesh, workspace, below, above, [](const auto& distribute) {
     distribute(0);
     distribute(1);
     distribute(2);
@@ -238,7 +239,7 @@ void KdTreeBuilder::layOut(const KdBranch& root, KdTree& tree) const
   std::vector<KdLeaf> leaves;
   layOutPieces(root, tree.Nodes, tree.References, leaves);
   tbb::parallel_invoke([&] { tree.Groups = groupCells(tree.Nodes, leaves); },
-    [&] { tree.Blocks = copyTriangles(leaves, tree.References, this->Corners); });
+    [&] { tree.Blocks = copyTriangles(leaves, tree.References, this->Mesh); });
 }
 
 std::unique_ptr<const KdTree> KdTreeBuilder::build()

@@ -165,15 +165,15 @@ std::uint32_t CellGrouping::add(std::uint32_t node)
   return static_cast<std::uint32_t>(number);
 }
 
-void copyLane(TriangleBlock& block, std::uint32_t lane, std::uint32_t triangle, const glm::vec3* positions)
+void copyLane(TriangleBlock& block, std::uint32_t lane, std::uint32_t triangle, const Geometry& mesh)
 {
   block.triangle[lane] = triangle;
-  for (int corner = 0; corner < 3; ++corner)
+  const std::array<glm::vec3, 3> positions = mesh.cornerPositions(triangle);
+  for (std::size_t corner = 0; corner < 3; ++corner)
   {
-    const glm::vec3& position = positions[3 * std::size_t(triangle) + std::size_t(corner)];
     for (int axis = 0; axis < 3; ++axis)
     {
-      block.corner[corner][axis][lane] = position[axis];
+      block.corner[corner][axis][lane] = positions[corner][axis];
     }
   }
 }
@@ -187,7 +187,7 @@ HugePageVector<KdCells> groupCells(
 }
 
 HugePageVector<TriangleBlock> copyTriangles(const std::vector<KdLeaf>& leaves,
-  const std::vector<std::uint32_t>& references, const glm::vec3* positions)
+  const std::vector<std::uint32_t>& references, const Geometry& mesh)
 {
   const std::vector<std::uint32_t> numbers = blockNumbers(leaves);
   HugePageVector<TriangleBlock> blocks(numbers.back());
@@ -199,7 +199,7 @@ HugePageVector<TriangleBlock> copyTriangles(const std::vector<KdLeaf>& leaves,
       for (std::uint32_t lane = 0; lane < lanes; ++lane)
       {
         const std::uint32_t triangle = references[leaf.first + std::min(lane, leaf.count - 1)];
-        copyLane(blocks[numbers[i] + lane / kdcost::kBlock], lane % kdcost::kBlock, triangle, positions);
+        copyLane(blocks[numbers[i] + lane / kdcost::kBlock], lane % kdcost::kBlock, triangle, mesh);
       }
     }
   };

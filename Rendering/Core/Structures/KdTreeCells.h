@@ -49,6 +49,6 @@ HugePageVector<KdCells> groupCells(
 
 // Copies the leaves' triangles.
 HugePageVector<TriangleBlock> copyTriangles(const std::vector<KdLeaf>& leaves,
-  const std::vector<std::uint32_t>& references, const glm::vec3* positions);
+  const std::vector<std::uint32_t>& references, const Geometry& mesh);
 
 } // namespace hrt

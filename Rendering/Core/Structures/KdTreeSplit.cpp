@@ -141,7 +141,7 @@ void markSides(
   }
 }
 
-void cutTriangles(const KdCell& cell, const KdSplit& split, const glm::vec3* corners,
+void cutTriangles(const KdCell& cell, const KdSplit& split, const Geometry& mesh,
   KdArena& arena, KdCutTriangles& cut)
 {
   for (int axis = 0; axis < 3; ++axis)
@@ -153,7 +153,7 @@ void cutTriangles(const KdCell& cell, const KdSplit& split, const glm::vec3* cor
   {
     const std::uint32_t triangle = cut.triangles[i];
     const KdSplitBounds bounds =
-      splitTriangle(corners + 3 * std::size_t(triangle), cell.box, split.axis, split.plane);
+      splitTriangle(mesh.cornerPositions(triangle).data(), cell.box, split.axis, split.plane);
     for (int axis = 0; axis < 3; ++axis)
     {
       cut.below[axis].add(bounds.lower.lower[axis], bounds.lower.upper[axis], triangle);

@@ -49,7 +49,7 @@ struct KdWorkspace
 // The children of a cell. `below` and `above` must have room in each list for two events a triangle and
 // one more. `perAxis` runs a function for the axes 0, 1, 2: in turn, or at once.
 template <class PerAxis>
-void splitCell(const KdCell& cell, const KdSplit& split, const glm::vec3* corners,
+void splitCell(const KdCell& cell, const KdSplit& split, const Geometry& mesh,
   KdWorkspace& workspace, KdCell& below, KdCell& above, PerAxis perAxis);
 
 // --- Implementation of the template ---------------------------------------------------------------
@@ -66,14 +66,14 @@ struct KdCutTriangles
 void markSides(
   const KdEventList& along, const KdSplit& split, std::uint8_t* sides, KdCutTriangles& cut);
 // Computes the new events.
-void cutTriangles(const KdCell& cell, const KdSplit& split, const glm::vec3* corners,
+void cutTriangles(const KdCell& cell, const KdSplit& split, const Geometry& mesh,
   KdArena& arena, KdCutTriangles& cut);
 // Sorts an axis' new events and gives the children their events along it.
 void distributeEvents(const KdEventList& events, const std::uint8_t* sides, KdEventList& cutBelow,
   KdEventList& cutAbove, KdEventList& below, KdEventList& above);
 
 template <class PerAxis>
-void splitCell(const KdCell& cell, const KdSplit& split, const glm::vec3* corners,
+void splitCell(const KdCell& cell, const KdSplit& split, const Geometry& mesh,
   KdWorkspace& workspace, KdCell& below, KdCell& above, PerAxis perAxis)
 {
   below.box = above.box = cell.box;
@@ -90,7 +90,7 @@ void splitCell(const KdCell& cell, const KdSplit& split, const glm::vec3* corner
   cut.triangles =
     reinterpret_cast<std::uint32_t*>(workspace.arena.allocate((std::size_t(most) + 2) / 2));
   markSides(cell.events[split.axis], split, workspace.sides.get(), cut);
-  cutTriangles(cell, split, corners, workspace.arena, cut);
+  cutTriangles(cell, split, mesh, workspace.arena, cut);
   perAxis([&](int axis) {
     distributeEvents(cell.events[axis], workspace.sides.get(), cut.below[axis], cut.above[axis],
       below.events[axis], above.events[axis]);

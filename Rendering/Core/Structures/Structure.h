@@ -62,7 +62,8 @@ public:
   // visible to rays or cast shadows take part. The snapshot's geometries are kept alive by it.
   virtual StructureReport update(const Snapshot& snapshot) = 0;
 
-  // The nearest hit with 0 < t < tMaximum among the parts visible to rays. Rays with a non-finite
+  // The nearest hit with 0 < t < tMaximum among the parts visible to rays, of equal ones that of the
+  // largest number. Rays with a non-finite
   // or zero direction, a non-finite origin or a tMaximum that is not a number are misses. Safe to
   // call from several threads at once.
   virtual Hit intersect(const Ray& ray) const = 0;

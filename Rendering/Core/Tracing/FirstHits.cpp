@@ -73,7 +73,7 @@ FirstHits::Outcome FirstHits::find(const std::uint32_t* ids, std::uint32_t pixel
       if (this->Points.exactHit(candidates.triangles[i], exact, last, other) &&
         other.t >= first &&
         (!best.valid() || other.t < best.t ||
-          (other.t == best.t && other.triangle < best.triangle)))
+          (other.t == best.t && other.triangle > best.triangle)))
       {
         best = other;
       }

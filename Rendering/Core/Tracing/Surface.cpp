@@ -1,6 +1,8 @@
 // Implements surface points. Geometry in double; colours in float, as the shared shading has it.
 #include "Rendering/Core/Tracing/Surface.h"
 
+#include "Rendering/Core/Surface/SurfaceColors.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -42,54 +44,8 @@ glm::dvec3 cornerNormal(const Geometry& geometry, std::size_t triangle, const Hi
   {
     return glm::dvec3(0.0);
   }
-  const glm::vec3* n = geometry.normals.data() + 3 * triangle;
+  const std::array<glm::vec3, 3> n = geometry.cornersOf(geometry.normals, triangle);
   return shading64::hrtInterpolate3(n[0], n[1], n[2], hit.u, hit.v);
-}
-
-// RGBA in [0, 1] where scalars colour the geometry.
-glm::vec4 scalarColor(const Geometry& geometry, std::size_t triangle, const Hit& hit)
-{
-  const float u = static_cast<float>(hit.u), v = static_cast<float>(hit.v);
-  if (geometry.colorSource == ColorSource::Corner)
-  {
-    const glm::u8vec4* c = geometry.colors.data() + 3 * triangle;
-    return shading::hrtInterpolate4(glm::vec4(c[0]), glm::vec4(c[1]), glm::vec4(c[2]), u, v) /
-      255.0f;
-  }
-  const glm::vec2* c = geometry.coordinates.data() + 3 * triangle;
-  const int texel = shading::hrtLookupTexel(shading::hrtInterpolate2(c[0], c[1], c[2], u, v),
-    geometry.lookupWidth, geometry.lookupHeight);
-  return glm::vec4(geometry.lookup[static_cast<std::size_t>(texel)]) / 255.0f;
-}
-
-PhongTerms withScalarColor(PhongTerms terms, const glm::vec4& color)
-{
-  terms.ambientColor = terms.diffuseColor = glm::vec3(color);
-  terms.opacity *= color.a;
-  return terms;
-}
-
-// VTK's rule: scalar colours replace the front's ambient and diffuse colour, keep its coefficients
-// and switch the backface property off.
-PhongTerms termsAt(const Part& part, std::size_t triangle, const Hit& hit, bool frontSide)
-{
-  const Geometry& geometry = *part.geometry;
-  if (part.copies && !part.copies->colors.empty())
-  {
-    return withScalarColor(part.material.front,
-      glm::vec4(part.copies->colors[part.copyOf(hit.triangle)]) / 255.0f);
-  }
-  if (geometry.colorSource == ColorSource::Property)
-  {
-    return frontSide ? part.material.front : part.material.back;
-  }
-  return withScalarColor(part.material.front, scalarColor(geometry, triangle, hit));
-}
-
-shading::HrtSurface colorsOf(const PhongTerms& terms)
-{
-  return { terms.ambientColor * terms.ambient, terms.diffuseColor * terms.diffuse,
-    terms.specularColor * terms.specular, terms.specularPower };
 }
 
 } // namespace
@@ -167,23 +123,20 @@ SurfacePoint Surfaces::at(const Hit& hit, const glm::dvec3& direction) const
   point.position = corners.a + hit.u * e1 + hit.v * e2;
   point.positionError = kPositionError * largestCoordinate(corners);
 
-  const glm::dvec3 wound = glm::cross(e1, e2);
-  point.frontSide = !(glm::dot(wound, direction) > 0.0);
-  point.outside = point.frontSide != placement.mirrored;
-  point.geometricNormal = glm::normalize(point.frontSide ? wound : -wound);
-
-  point.normal = point.opticalNormal = point.geometricNormal;
+  const shading64::HrtSides sides =
+    shading64::hrtSides(corners.a, corners.b, corners.c, direction);
+  point.frontSide = sides.front;
+  point.outside = sides.front != placement.mirrored;
+  point.geometricNormal = sides.geometricNormal;
   const glm::dvec3 smooth =
     placement.normalsToScene * cornerNormal(*part.geometry, triangle, hit);
-  const double length = glm::length(smooth);
-  if (length > 0.0)
-  {
-    point.normal = (point.frontSide ? smooth : -smooth) / length;
-    point.opticalNormal = (point.outside ? smooth : -smooth) / length;
-  }
+  point.normal = shading64::hrtSmoothNormal(smooth, sides.geometricNormal, point.frontSide);
+  point.opticalNormal = shading64::hrtSmoothNormal(smooth, sides.geometricNormal, point.outside);
 
-  const PhongTerms terms = termsAt(part, triangle, hit, point.frontSide);
-  point.colors = colorsOf(terms);
+  const shading::HrtTerms terms =
+    shading::SurfaceColors(part, triangle, part.copyOf(hit.triangle))
+      .hrtTermsAt(static_cast<float>(hit.u), static_cast<float>(hit.v), point.frontSide);
+  point.colors = shading::hrtSurface(terms);
   point.opacity = terms.opacity;
   point.diffuseColor = terms.diffuseColor;
   return point;

@@ -51,41 +51,44 @@ float lightVisibility(int index, HrtLight light, vec3 p, vec3 ng, float folds)
   return hrtLightVisibility(int(t4.x), int(t4.y), light, p, ng, folds);
 }
 
-HrtSurface fetchSurface(
-  int part, ivec4 bases, ivec4 more, vec4 flags, int corner, vec2 uv, bool front)
+// Where the data of the triangle at hand lie, for what the shared source of colours asks for.
+int partNumber;
+ivec4 partBases;  // first triangle, normals, colours, coordinates
+ivec4 partLookup; // start, width, height
+int cornerInPart; // the first of the triangle's three
+int colorSource;
+
+HrtTerms fetchTerms(bool front)
 {
-  int at = part * PART_TEXELS + (front || flags.x == 1.0 ? 7 : 10);
+  int at = partNumber * PART_TEXELS + (front ? 7 : 10);
   vec4 ambient = texelFetch(partTable, at);
   vec4 diffuse = texelFetch(partTable, at + 1);
   vec4 specular = texelFetch(partTable, at + 2);
-  if (bases.z >= 0)
-  {
-    int c = bases.z * 3 + corner;
-    vec3 rgb = hrtInterpolate4(texelFetch(colors, c), texelFetch(colors, c + 1),
-      texelFetch(colors, c + 2), uv.x, uv.y).rgb;
-    ambient.rgb = rgb;
-    diffuse.rgb = rgb;
-  }
-  else if (bases.w >= 0)
-  {
-    int c = bases.w * 3 + corner;
-    vec2 st = hrtInterpolate2(texelFetch(coordinates, c).rg, texelFetch(coordinates, c + 1).rg,
-      texelFetch(coordinates, c + 2).rg, uv.x, uv.y);
-    vec3 rgb = texelFetch(lookups, more.x + hrtLookupTexel(st, more.y, more.z)).rgb;
-    ambient.rgb = rgb;
-    diffuse.rgb = rgb;
-  }
-  return HrtSurface(ambient.rgb * ambient.w, diffuse.rgb * diffuse.w, specular.rgb, specular.w);
+  return HrtTerms(
+    ambient.rgb, diffuse.rgb, specular.rgb, ambient.w, diffuse.w, specular.w, 1.0);
 }
+
+#define HRT_COLOR_SOURCE colorSource
+#define HRT_TERMS(side) fetchTerms(side)
+#define HRT_CORNER_COLOR(k) texelFetch(colors, partBases.z * 3 + cornerInPart + (k))
+#define HRT_CORNER_COORDINATES(k) texelFetch(coordinates, partBases.w * 3 + cornerInPart + (k)).rg
+#define HRT_LOOKUP(i) texelFetch(lookups, partLookup.x + (i))
+#define HRT_LOOKUP_SIZE partLookup.yz
+#define HRT_COLOR_ONE 1.0
+//HRT::SurfaceColors
 
 vec4 shadeHit(uvec4 hit)
 {
   int triangle = int(hit.x - 1u);
   int part = int(texelFetch(trianglePart, triangle).r);
-  ivec4 bases = texelFetch(partLayout, part * LAYOUT_TEXELS);    // first triangle, normals, colours, coordinates
-  ivec4 more = texelFetch(partLayout, part * LAYOUT_TEXELS + 1); // lookup start, width, height
-  vec4 flags = texelFetch(partTable, part * PART_TEXELS + 13); // scalar colours, lit, folds
-  int corner = (triangle - bases.x) * 3; // within the part
+  partNumber = part;
+  partBases = texelFetch(partLayout, part * LAYOUT_TEXELS);
+  partLookup = texelFetch(partLayout, part * LAYOUT_TEXELS + 1);
+  cornerInPart = (triangle - partBases.x) * 3;
+  colorSource = partBases.z >= 0 ? HRT_COLOR_OF_CORNERS
+    : partBases.w >= 0           ? HRT_COLOR_OF_LOOKUP
+                                 : HRT_COLOR_OF_PROPERTY;
+  vec4 flags = texelFetch(partTable, part * PART_TEXELS + 13); // lit, folds
 
   mat4 positionToView = fetchMatrix(partTable, part * PART_TEXELS);
   vec3 a = (positionToView * texelFetch(positions, triangle * 3)).xyz;
@@ -108,29 +111,28 @@ vec4 shadeHit(uvec4 hit)
   }
   vec3 p = hrtInterpolate3(a, b, c, uv.x, uv.y);
 
-  vec3 face = cross(b - a, c - a);
-  bool front = dot(face, direction) <= 0.0;
-  vec3 ng = normalize(front ? face : -face);
+  HrtSides sides = hrtSides(a, b, c, direction);
+  vec3 ng = sides.geometricNormal;
   vec3 n = ng;
-  if (bases.y >= 0)
+  if (partBases.y >= 0)
   {
-    int at = bases.y * 3 + corner;
+    int at = partBases.y * 3 + cornerInPart;
     mat3 toView = mat3(texelFetch(partTable, part * PART_TEXELS + 4).xyz,
       texelFetch(partTable, part * PART_TEXELS + 5).xyz,
       texelFetch(partTable, part * PART_TEXELS + 6).xyz);
-    n = normalize(toView * hrtInterpolate3(texelFetch(normals, at).xyz,
-      texelFetch(normals, at + 1).xyz, texelFetch(normals, at + 2).xyz, uv.x, uv.y));
-    n = front ? n : -n;
+    n = hrtSmoothNormal(toView * hrtInterpolate3(texelFetch(normals, at).xyz,
+      texelFetch(normals, at + 1).xyz, texelFetch(normals, at + 2).xyz, uv.x, uv.y),
+      ng, sides.front);
   }
 
   if (shadowLight >= 0)
   {
-    return vec4(lightVisibility(shadowLight, fetchLight(shadowLight), p, ng, flags.z));
+    return vec4(lightVisibility(shadowLight, fetchLight(shadowLight), p, ng, flags.y));
   }
 
-  HrtSurface surface = fetchSurface(part, bases, more, flags, corner, uv, front);
+  HrtSurface surface = hrtSurface(hrtTermsAt(uv.x, uv.y, sides.front));
   vec3 color = hrtUnlit(surface);
-  if (flags.y == 1.0 && unlitScene == 0)
+  if (flags.x == 1.0 && unlitScene == 0)
   {
     color = surface.ambient;
     // As VTK does for every projection, the viewer is taken to be at the view coordinates' origin.
@@ -141,7 +143,7 @@ vec4 shadeHit(uvec4 hit)
       vec3 term = hrtShadeLight(surface, light, p, n, toViewer);
       if (term != vec3(0.0))
       {
-        color += term * lightVisibility(i, light, p, ng, flags.z);
+        color += term * lightVisibility(i, light, p, ng, flags.y);
       }
     }
   }

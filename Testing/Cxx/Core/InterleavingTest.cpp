@@ -139,7 +139,7 @@ Snapshot ramp(int width, int height, int steps)
   for (const glm::vec3& p : geometry->positions)
   {
     const int value = (p.x > 0 ? steps : 0) + (p.y > 0 ? steps / 2 : 0);
-    geometry->colors.push_back(glm::u8vec4(value, 10, 255 - value, 255));
+    geometry->colors.values.push_back(glm::u8vec4(value, 10, 255 - value, 255));
   }
   scenes::addPart(s, geometry).material = scenes::glowing(glm::vec3(1.0f));
   s.camera = parallelCamera(width, height);

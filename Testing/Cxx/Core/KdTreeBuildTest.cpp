@@ -184,7 +184,7 @@ TEST(KdTreeBuild, EveryPointOfATriangleIsInALeafThatListsIt)
     int lost = 0;
     for (std::uint32_t i = 0; i < mesh->triangleCount(); ++i)
     {
-      const glm::vec3* p = mesh->positions.data() + 3 * std::size_t(i);
+      const auto p = mesh->cornerPositions(i);
       for (int sample = 0; sample < 8; ++sample)
       {
         double u = sample < 3 ? double(sample == 1) : random(0.0, 1.0);
@@ -286,10 +286,10 @@ TEST(KdTreeBuild, BlocksHoldTheListedTriangles)
           held.push_back(number);
         }
         before = number;
+        const auto p = mesh->cornerPositions(number);
         for (int k = 0; k < 9; ++k)
         {
-          const glm::vec3& p = mesh->positions[3 * std::size_t(number) + std::size_t(k / 3)];
-          ASSERT_EQ(std::memcmp(&block.corner[k / 3][k % 3][lane], &p[k % 3], 4), 0);
+          ASSERT_EQ(std::memcmp(&block.corner[k / 3][k % 3][lane], &p[k / 3][k % 3], 4), 0);
         }
       }
     }

@@ -105,7 +105,7 @@ TEST(Lighting, NoRayWhereTheAnswerIsKnown)
   EXPECT_EQ(floor.rays.answered, 1u);
   // A shading normal that leans towards a light below the horizon: the face is its own shadow.
   auto tilted = std::make_shared<Geometry>(*floor.scene.parts[0].geometry);
-  tilted->normals.assign(6, glm::vec3(1, 0, 0.2f));
+  tilted->normals.values.assign(tilted->vertexCount(), glm::vec3(1, 0, 0.2f));
   floor.scene.parts[0].geometry = tilted;
   floor.scene.lights[0].direction = glm::normalize(glm::dvec3(-1, 0, 0.1));
   EXPECT_EQ(floor.brightnessAt(2.0), 0.0f);

@@ -191,15 +191,15 @@ TEST(Multisampling, OnlyFullModesDoubtATriangleThatIsMet)
   expectCounts(full.result.multisampling, 0, 1, 0, 0);
 }
 
-TEST(Multisampling, OfEquallyNearTrianglesTheSmallestNumberWins)
+TEST(Multisampling, OfEquallyNearTrianglesTheLargestNumberWins)
 {
   Halves halves;
   scenes::addPart(halves.scene, halves.scene.parts[0].geometry).material = scenes::glowing(kBlue);
   halves.prepare();
-  const std::uint32_t twin = halves.ids[Halves::at(5, 9)] + halves.scene.parts[3].firstTriangle;
+  const std::uint32_t twin = halves.ids[Halves::at(5, 9)] - halves.scene.parts[3].firstTriangle;
   const auto wrong = halves.planted(5, 9, 0, twin);
-  EXPECT_EQ(halves.trace(wrong, Multisampling::Lazy3x3)(5, 9), kOpaqueBlue);
-  EXPECT_EQ(halves.trace(wrong, Multisampling::Full3x3)(5, 9), kOpaqueRed);
+  EXPECT_EQ(halves.trace(wrong, Multisampling::Lazy3x3)(5, 9), kOpaqueRed);
+  EXPECT_EQ(halves.trace(wrong, Multisampling::Full3x3)(5, 9), kOpaqueBlue);
 }
 
 TEST(Multisampling, NeighboursBeyondTheClipPlanesDoNotCount)

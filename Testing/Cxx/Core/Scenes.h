@@ -4,6 +4,7 @@
 #include "Rendering/Core/Geometry/TriangleTest.h"
 #include "Rendering/Core/Snapshot.h"
 #include "Rendering/Core/Structures/Structure.h"
+#include "Testing/Cxx/Meshes.h"
 
 #include <glm/gtc/constants.hpp>
 #include <glm/gtc/matrix_transform.hpp>
@@ -24,29 +25,12 @@ constexpr double kPi = 3.14159265358979323846;
 constexpr double kFloatRounding = 0x1p-24;
 constexpr double kDoubleRounding = 0x1p-53;
 
+using meshes::cornersOf;
+
 inline std::shared_ptr<Geometry> makeGeometry(
-  std::vector<glm::vec3> positions, std::vector<glm::vec3> normals = {})
+  const std::vector<glm::vec3>& corners, const std::vector<glm::vec3>& normals = {})
 {
-  static std::uint64_t version = 0;
-  auto geometry = std::make_shared<Geometry>();
-  geometry->version = ++version;
-  geometry->positions = std::move(positions);
-  geometry->normals = std::move(normals);
-  geometry->cellIds.resize(geometry->positions.size() / 3);
-  for (std::size_t i = 0; i < geometry->cellIds.size(); ++i)
-  {
-    geometry->cellIds[i] = static_cast<std::int64_t>(i);
-  }
-  if (!geometry->positions.empty())
-  {
-    geometry->boundsMin = geometry->boundsMax = geometry->positions.front();
-    for (const glm::vec3& p : geometry->positions)
-    {
-      geometry->boundsMin = glm::min(geometry->boundsMin, p);
-      geometry->boundsMax = glm::max(geometry->boundsMax, p);
-    }
-  }
-  return geometry;
+  return meshes::fromCorners(corners, normals);
 }
 
 // a b c d in a plane, counter-clockwise seen from the front.
@@ -174,7 +158,7 @@ public:
   {
     Hit best;
     this->forEachHit(ray, &Part::visibleToRays, [&](const Hit& hit) {
-      if (hit.t < best.t || (hit.t == best.t && hit.triangle < best.triangle))
+      if (hit.t < best.t || (hit.t == best.t && hit.triangle > best.triangle))
       {
         best = hit;
       }

@@ -16,7 +16,7 @@ const glm::dvec3 kDown(0, 0, -1);
 std::shared_ptr<Geometry> floorQuad()
 {
   auto g = scenes::quad({ -1, -1, 0 }, { 1, -1, 0 }, { 1, 1, 0 }, { -1, 1, 0 });
-  g->normals.assign(6, glm::vec3(3, 0, 4)); // five long: not normalised
+  g->normals.values.assign(g->vertexCount(), glm::vec3(3, 0, 4)); // five long: not normalised
   return g;
 }
 
@@ -73,7 +73,7 @@ TEST(Surface, BackfacePropertyOnlyWithoutScalars)
   auto colored = std::make_shared<Geometry>(*floorQuad());
   colored->version = 1000001;
   colored->colorSource = ColorSource::Corner;
-  colored->colors.assign(6, glm::u8vec4(255, 0, 51, 102));
+  colored->colors.values.assign(colored->vertexCount(), glm::u8vec4(255, 0, 51, 102));
   Material material;
   material.front.diffuseColor = { 0, 1, 0 };
   material.front.diffuse = 0.5f;
@@ -109,7 +109,7 @@ TEST(Surface, LookupTakesTheNearestTexel)
     { 255, 255, 255, 0 } };
   for (const glm::vec3& p : mapped->positions)
   {
-    mapped->coordinates.push_back({ 0.5f * (p.x + 1.0f), 0.5f });
+    mapped->coordinates.values.push_back({ 0.5f * (p.x + 1.0f), 0.5f });
   }
   Snapshot s;
   scenes::addPart(s, mapped);

@@ -166,9 +166,9 @@ TEST(Tracer, GlassSphereBendsLightAsOnPaper)
 {
   const auto ball = scenes::sphere(256, 128);
   float longest = 0.0f;
-  for (std::size_t i = 0; i + 2 < ball->positions.size(); i += 3)
+  for (std::size_t i = 0; i < ball->triangleCount(); ++i)
   {
-    const glm::vec3* p = ball->positions.data() + i;
+    const auto p = ball->cornerPositions(i);
     longest = std::max({ longest, glm::distance(p[0], p[1]), glm::distance(p[1], p[2]),
       glm::distance(p[2], p[0]) });
   }

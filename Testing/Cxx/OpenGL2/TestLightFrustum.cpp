@@ -1,6 +1,7 @@
 // The shadow maps' projections: whatever casts lies within the map, and a texel is as large as the
 // table for the shader says.
 #include "Rendering/OpenGL2/LightFrustum.h"
+#include "Testing/Cxx/Meshes.h"
 
 #include <gtest/gtest.h>
 
@@ -15,10 +16,8 @@ constexpr int kResolution = 512;
 
 hrt::Snapshot boxScene(const glm::dvec3& lower, const glm::dvec3& upper)
 {
-  auto geometry = std::make_shared<hrt::Geometry>();
-  geometry->version = 1;
-  geometry->positions = { glm::vec3(lower), glm::vec3(upper), glm::vec3(lower.x, upper.y, lower.z) };
-  geometry->cellIds = { 0 };
+  const auto geometry = hrt::meshes::fromCorners(
+    { glm::vec3(lower), glm::vec3(upper), glm::vec3(lower.x, upper.y, lower.z) });
   geometry->boundsMin = lower;
   geometry->boundsMax = upper;
   hrt::Part part;
@@ -184,10 +183,9 @@ TEST(LightFrustum, FlatCasterEdgeOn)
 TEST(LightFrustum, FlatPartsWithEverythingBeforeThemDoNotCast)
 {
   hrt::Snapshot snapshot = boxScene({ -1, 0, -1 }, { 1, 2, 1 });
-  hrt::Snapshot flat = boxScene({ -100, 0, -100 }, { 100, 0, 100 });
-  auto floor = std::make_shared<hrt::Geometry>(*flat.parts[0].geometry);
-  floor->positions = { { -100, 0, -100 }, { -100, 0, 100 }, { 100, 0, 0 } };
-  floor->flat = hrt::isFlat(floor->positions);
+  const auto floor =
+    hrt::meshes::fromCorners({ { -100, 0, -100 }, { -100, 0, 100 }, { 100, 0, 0 } });
+  floor->flat = hrt::isFlat(*floor);
   ASSERT_TRUE(floor->flat);
   hrt::Part part;
   part.geometry = floor;
@@ -217,8 +215,11 @@ TEST(Flatness, OnlyOnePlaneIsFlat)
 {
   const glm::vec3 a(0.1f, 0.2f, 0.3f), b(1.3f, 0.7f, 0.1f), c(0.2f, 1.1f, 0.9f);
   const glm::vec3 inPlane = a + 0.7f * (b - a) + 0.9f * (c - a);
-  EXPECT_TRUE(hrt::isFlat({}));
-  EXPECT_TRUE(hrt::isFlat({ a, b, c }));
-  EXPECT_TRUE(hrt::isFlat({ a, a, b, a, b, c, b, c, inPlane })) << "but for rounding";
-  EXPECT_FALSE(hrt::isFlat({ a, b, c, b, c, inPlane + glm::vec3(0, 0, 1e-4f) }));
+  const auto isFlat = [](const std::vector<glm::vec3>& corners) {
+    return hrt::isFlat(*hrt::meshes::fromCorners(corners));
+  };
+  EXPECT_TRUE(isFlat({}));
+  EXPECT_TRUE(isFlat({ a, b, c }));
+  EXPECT_TRUE(isFlat({ a, a, b, a, b, c, b, c, inPlane })) << "but for rounding";
+  EXPECT_FALSE(isFlat({ a, b, c, b, c, inPlane + glm::vec3(0, 0, 1e-4f) }));
 }

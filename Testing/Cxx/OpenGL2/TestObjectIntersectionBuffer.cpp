@@ -92,11 +92,11 @@ double heightInPixels(const hrt::Snapshot& snapshot, hrt::TriangleId id)
   const hrt::Part& part = snapshot.parts[snapshot.partOf(id)];
   const glm::dmat4 toClip =
     snapshot.camera.viewToClip * snapshot.camera.worldToView * part.positionsToWorld();
+  const auto corners = part.geometry->cornerPositions(id - part.firstTriangle);
   glm::dvec2 p[3];
   for (int k = 0; k < 3; ++k)
   {
-    const glm::dvec3 local(part.geometry->positions[3 * (id - part.firstTriangle) + k]);
-    const glm::dvec4 clip = toClip * glm::dvec4(local, 1.0);
+    const glm::dvec4 clip = toClip * glm::dvec4(glm::dvec3(corners[k]), 1.0);
     p[k] = glm::dvec2(clip) / clip.w * 0.5 *
       glm::dvec2(snapshot.camera.width, snapshot.camera.height);
   }

@@ -69,11 +69,12 @@ std::vector<Triangle> gather(const Snapshot& snapshot)
     const glm::dmat4 toWorld = part.positionsToWorld();
     for (std::size_t i = 0; i < part.geometry->triangleCount(); ++i)
     {
+      const auto local = part.geometry->cornerPositions(i);
       glm::dvec3 corner[3];
       for (int k = 0; k < 3; ++k)
       {
-        const glm::dvec3 local(part.geometry->positions[3 * i + k]);
-        corner[k] = glm::dvec3(toWorld * glm::dvec4(local, 1.0)) - snapshot.origin;
+        corner[k] =
+          glm::dvec3(toWorld * glm::dvec4(glm::dvec3(local[k]), 1.0)) - snapshot.origin;
       }
       Triangle triangle{ part.firstTriangle + static_cast<TriangleId>(i), corner[0], corner[1],
         corner[2], 0, 0, 0, 0 };
@@ -151,7 +152,7 @@ std::vector<Pixel> bruteForce(const Snapshot& snapshot)
           {
             pixel = { triangle.id, t, u, v, kInfinity };
           }
-          else if (t < pixel.t)
+          else if (t <= pixel.t) // triangles come by rising number
           {
             pixel = { triangle.id, t, u, v, (pixel.t - t) / t };
           }

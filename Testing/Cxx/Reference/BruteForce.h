@@ -18,7 +18,7 @@ namespace reference
 
 struct Pixel
 {
-  TriangleId triangle = kNoTriangle; // of equally near ones the smallest number
+  TriangleId triangle = kNoTriangle; // of equally near ones the largest number
   double t = 0.0;                    // in the length of CameraRays::direction
   double u = 0.0, v = 0.0;
   // The next nearest hit's distance relative to t: how clear the decision is. Infinite: no other.

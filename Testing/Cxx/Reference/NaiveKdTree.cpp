@@ -108,17 +108,17 @@ class Builder
 {
 public:
   explicit Builder(const Geometry& geometry)
-    : Positions(geometry.positions.data())
+    : Mesh(geometry)
     , DepthLimit(kdcost::depthLimit(geometry.triangleCount()))
   {
     Parts parts;
     for (std::uint32_t i = 0; i < geometry.triangleCount(); ++i)
     {
       KdBox box;
-      for (int k = 0; k < 3; ++k)
+      for (const glm::vec3& corner : geometry.cornerPositions(i))
       {
-        box.include(this->Positions[3 * std::size_t(i) + k] + 0.0f);
-        this->Tree.box.include(this->Positions[3 * std::size_t(i) + k] + 0.0f);
+        box.include(corner + 0.0f);
+        this->Tree.box.include(corner + 0.0f);
       }
       parts.push_back({ i, box });
     }
@@ -176,12 +176,12 @@ private:
       return;
     }
     const KdSplitBounds bounds = splitTriangle(
-      this->Positions + 3 * std::size_t(part.triangle), cell, split.axis, split.plane);
+      this->Mesh.cornerPositions(part.triangle).data(), cell, split.axis, split.plane);
     below.push_back({ part.triangle, bounds.lower });
     above.push_back({ part.triangle, bounds.upper });
   }
 
-  const glm::vec3* Positions;
+  const Geometry& Mesh;
   int DepthLimit;
   NaiveKdTree Tree;
 };

@@ -184,11 +184,11 @@ glm::dvec4 Renderer::scalarColor(const Geometry& g, std::size_t i, double u, dou
 {
   if (g.colorSource == ColorSource::Corner)
   {
-    const glm::u8vec4* c = g.colors.data() + 3 * i;
+    const auto c = g.cornersOf(g.colors, i);
     return shading64::hrtInterpolate4(
              glm::dvec4(c[0]), glm::dvec4(c[1]), glm::dvec4(c[2]), u, v) / 255.0;
   }
-  const glm::vec2* c = g.coordinates.data() + 3 * i;
+  const auto c = g.cornersOf(g.coordinates, i);
   const glm::dvec2 st = shading64::hrtInterpolate2(
     glm::dvec2(c[0]), glm::dvec2(c[1]), glm::dvec2(c[2]), u, v);
   const glm::u8vec4 texel = g.lookup[std::size_t(shading64::hrtLookupTexel(st, g.lookupWidth, g.lookupHeight))];
@@ -215,7 +215,7 @@ Point Renderer::pointAt(const SoupHit& hit, const glm::dvec3& direction) const
   point.shadingNormal = point.opticalNormal = point.faceNormal;
   if (!g.normals.empty())
   {
-    const glm::vec3* n = g.normals.data() + 3 * i;
+    const auto n = g.cornersOf(g.normals, i);
     const glm::dvec3 smooth = glm::transpose(glm::inverse(linear)) *
       shading64::hrtInterpolate3(
         glm::dvec3(n[0]), glm::dvec3(n[1]), glm::dvec3(n[2]), hit.u, hit.v);

@@ -114,7 +114,7 @@ TEST(ReferenceRenderer, AnOpenBorderMayBeMissed)
   EXPECT_EQ(admissible(picture, 2, 4), (Ids{ 1, kNoTriangle }));
   EXPECT_EQ(admissible(picture, 6, 6), (Ids{ 0, 1, kNoTriangle })) << "a corner";
   EXPECT_EQ(admissible(picture, 4, 4), (Ids{ 0, 1 })) << "the cut: no gap";
-  EXPECT_EQ(picture.triangles[6 * 8 + 6], 0u) << "of equals the smallest";
+  EXPECT_EQ(picture.triangles[6 * 8 + 6], 1u) << "of equals the largest";
 }
 
 TEST(ReferenceRenderer, CoplanarTrianglesAreAllAdmissible)
@@ -123,7 +123,7 @@ TEST(ReferenceRenderer, CoplanarTrianglesAreAllAdmissible)
   scenes::addPart(s, s.parts[0].geometry);
   const Picture picture = reference::render(s, TracerSettings());
   EXPECT_EQ(admissible(picture, 5, 3), (Ids{ 0, 2 }));
-  EXPECT_EQ(picture.triangles[3 * 8 + 5], 0u);
+  EXPECT_EQ(picture.triangles[3 * 8 + 5], 2u);
   s.parts[1].localToWorld[3].z = 1e-9; // far more than rounding, at a distance of 5
   EXPECT_EQ(admissible(reference::render(s, TracerSettings()), 5, 3), (Ids{ 2 }));
 }

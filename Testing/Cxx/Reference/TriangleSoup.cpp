@@ -185,11 +185,11 @@ TriangleSoup::TriangleSoup(const Snapshot& snapshot)
     toScene[3] -= glm::dvec4(snapshot.origin, 0.0);
     for (std::size_t i = 0; i < part.geometry->triangleCount(); ++i)
     {
+      const auto local = part.geometry->cornerPositions(i);
       glm::dvec3 corner[3];
       for (int k = 0; k < 3; ++k)
       {
-        const glm::dvec3 local(part.geometry->positions[3 * i + k]);
-        corner[k] = glm::dvec3(toScene * glm::dvec4(local, 1.0));
+        corner[k] = glm::dvec3(toScene * glm::dvec4(glm::dvec3(local[k]), 1.0));
         const glm::dvec3 size = glm::abs(corner[k]);
         this->Reach = std::max({ this->Reach, size.x, size.y, size.z });
       }
@@ -257,7 +257,7 @@ SoupHit TriangleSoup::nearest(const SoupRay& ray, const Filter& counts) const
     {
       continue;
     }
-    if (v.depth < best.t || (v.depth == best.t && triangle.id < best.triangle->id))
+    if (v.depth < best.t || (v.depth == best.t && triangle.id > best.triangle->id))
     {
       second = best.t;
       best = hitFrom(v, triangle);
@@ -299,9 +299,9 @@ Sighting TriangleSoup::look(const SoupRay& ray, const Filter& counts,
   double limit = std::numeric_limits<double>::infinity();
   for (const Candidate& candidate : candidates)
   {
-    if (candidate.hit && (!nearest || compareDepths(candidate.meeting, nearest->meeting) < 0))
+    if (candidate.hit && (!nearest || compareDepths(candidate.meeting, nearest->meeting) <= 0))
     {
-      nearest = &candidate; // candidates come by rising id: the smallest of equals stays
+      nearest = &candidate; // candidates come by rising id: the largest of equals stays
     }
     if (candidate.firm || (candidate.hit && isCovered(ray, candidate, candidates)))
     {

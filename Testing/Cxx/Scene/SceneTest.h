@@ -3,6 +3,7 @@
 #pragma once
 
 #include "Rendering/Core/Snapshot.h"
+#include "Testing/Cxx/Meshes.h"
 #include "vtkHybridScene.h"
 
 #include "vtkActor.h"
@@ -169,8 +170,7 @@ protected:
 // Twice the area vector of a triangle, in double.
 inline glm::dvec3 areaVector(const hrt::Geometry& geometry, std::size_t triangle)
 {
-  const glm::dvec3 a(geometry.positions[3 * triangle]);
-  const glm::dvec3 b(geometry.positions[3 * triangle + 1]);
-  const glm::dvec3 c(geometry.positions[3 * triangle + 2]);
-  return glm::cross(b - a, c - a);
+  const auto p = geometry.cornerPositions(triangle);
+  const glm::dvec3 a(p[0]);
+  return glm::cross(glm::dvec3(p[1]) - a, glm::dvec3(p[2]) - a);
 }

@@ -166,8 +166,8 @@ TEST_F(Changes, OfPointsReplaceOneGeometry)
   EXPECT_EQ(this->flags(), std::set<std::string>{ "geometry" });
   EXPECT_NE(this->snapshot->parts[0].geometry, before->parts[0].geometry);
   EXPECT_NE(this->snapshot->parts[0].geometry->version, before->parts[0].geometry->version);
-  EXPECT_EQ(this->snapshot->parts[0].geometry->positions[1], glm::vec3(1.5f, 0, 0));
-  EXPECT_EQ(before->parts[0].geometry->positions[1], glm::vec3(1, 0, 0)) << "the old one is kept";
+  EXPECT_EQ(this->snapshot->parts[0].geometry->cornerPositions(0)[1], glm::vec3(1.5f, 0, 0));
+  EXPECT_EQ(before->parts[0].geometry->cornerPositions(0)[1], glm::vec3(1, 0, 0)) << "the old one is kept";
   EXPECT_EQ(this->snapshot->parts[1].geometry, before->parts[1].geometry);
   this->expectQuiet();
 }
@@ -252,7 +252,7 @@ TEST_F(Changes, ActorsThatShareAMapperShareTheGeometry)
   mesh->GetPoints()->Modified();
   this->update();
   EXPECT_EQ(this->snapshot->parts[2].geometry, this->snapshot->parts[0].geometry);
-  EXPECT_EQ(this->snapshot->parts[2].geometry->positions[1], glm::vec3(1.5f, 0, 0));
+  EXPECT_EQ(this->snapshot->parts[2].geometry->cornerPositions(0)[1], glm::vec3(1.5f, 0, 0));
 }
 
 TEST_F(Changes, TheOldSnapshotOutlivesTheScene)

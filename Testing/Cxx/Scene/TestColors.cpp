@@ -54,11 +54,13 @@ protected:
   {
     const hrt::Geometry& g = this->onlyGeometry();
     EXPECT_EQ(g.colorSource, hrt::ColorSource::Corner);
-    ASSERT_EQ(g.colors.size(), tuples.size());
+    const std::vector<glm::u8vec4> colors = hrt::meshes::atCorners(g, g.colors);
+    ASSERT_EQ(colors.size(), tuples.size());
     for (std::size_t i = 0; i < tuples.size(); ++i)
     {
-      EXPECT_EQ(g.colors[i], this->mapped(tuples[i])) << i;
+      EXPECT_EQ(colors[i], this->mapped(tuples[i])) << i;
     }
+    EXPECT_EQ(g.vertexCount(), 4u) << "no vertex is multiplied for its colour";
     EXPECT_TRUE(g.coordinates.empty());
   }
 
@@ -138,7 +140,8 @@ TEST_F(Colors, DirectBytesWithAlpha)
   }
   this->mesh->GetPointData()->SetScalars(bytes);
   this->expectCorners(this->byPoint);
-  EXPECT_EQ(this->snapshot->parts[0].geometry->colors[1], glm::u8vec4(10, 254, 1, 255));
+  const hrt::Geometry& g = *this->snapshot->parts[0].geometry;
+  EXPECT_EQ(hrt::meshes::atCorners(g, g.colors)[1], glm::u8vec4(10, 254, 1, 255));
 }
 
 TEST_F(Colors, InterpolatedScalarsGiveCoordinatesAndTheTable)
@@ -157,11 +160,12 @@ TEST_F(Colors, InterpolatedScalarsGiveCoordinatesAndTheTable)
 
   this->mapper->MapScalars(1.0);
   vtkFloatArray* coordinates = this->mapper->GetColorCoordinates();
-  ASSERT_EQ(g.coordinates.size(), 6u);
+  const std::vector<glm::vec2> atCorners = hrt::meshes::atCorners(g, g.coordinates);
+  ASSERT_EQ(atCorners.size(), 6u);
   for (std::size_t i = 0; i < 6; ++i)
   {
-    EXPECT_EQ(g.coordinates[i].x, coordinates->GetComponent(this->byPoint[i], 0));
-    EXPECT_EQ(g.coordinates[i].y, coordinates->GetComponent(this->byPoint[i], 1));
+    EXPECT_EQ(atCorners[i].x, coordinates->GetComponent(this->byPoint[i], 0));
+    EXPECT_EQ(atCorners[i].y, coordinates->GetComponent(this->byPoint[i], 1));
   }
   // 16 colours, one below and one above the range; a second row for NaN.
   EXPECT_EQ(g.lookupWidth, 18);
@@ -192,13 +196,14 @@ TEST_F(Colors, InfiniteScalarsAndRangesHaveTheColorOfNaN)
     const hrt::Geometry& g = this->onlyGeometry();
     this->mapper->MapScalars(1.0);
     vtkFloatArray* coordinates = this->mapper->GetColorCoordinates();
-    ASSERT_EQ(g.coordinates.size(), 6u);
+    const std::vector<glm::vec2> atCorners = hrt::meshes::atCorners(g, g.coordinates);
+    ASSERT_EQ(atCorners.size(), 6u);
     const double* const ofNaN = coordinates->GetTuple2(0);
     const glm::vec2 nanPlace(ofNaN[0], ofNaN[1]);
     for (std::size_t i = 0; i < 6; ++i)
     {
       const double s = coordinates->GetComponent(this->byPoint[i], 0);
-      EXPECT_EQ(g.coordinates[i],
+      EXPECT_EQ(atCorners[i],
         std::isnan(s) ? nanPlace : glm::vec2(s, coordinates->GetComponent(this->byPoint[i], 1)));
     }
     EXPECT_EQ(std::isnan(coordinates->GetComponent(1, 0)), last == infinity) << "what is tested";
@@ -221,11 +226,11 @@ TEST_F(Colors, FollowTheLookupTable)
   table->Build();
   this->mapper->SetLookupTable(table);
   this->expectCorners(this->byPoint);
-  const auto before = this->snapshot->parts[0].geometry->colors;
+  const auto before = this->snapshot->parts[0].geometry->colors.values;
   table->SetHueRange(0.5, 0.9);
   table->ForceBuild();
   this->expectCorners(this->byPoint);
-  EXPECT_NE(this->snapshot->parts[0].geometry->colors, before);
+  EXPECT_NE(this->snapshot->parts[0].geometry->colors.values, before);
 }
 
 TEST_F(Colors, ThatDoNotCoverTheDataAreThePropertysWithOneWarning)

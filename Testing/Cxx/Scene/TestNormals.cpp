@@ -32,6 +32,13 @@ protected:
     return normals;
   }
 
+  // Of the only part, after an update.
+  std::vector<glm::vec3> atCorners()
+  {
+    const hrt::Geometry& g = this->onlyGeometry();
+    return hrt::meshes::atCorners(g, g.normals);
+  }
+
   void addPointNormals() { this->mesh->GetPointData()->SetNormals(array(this->ofPoints)); }
   void addCellNormals() { this->mesh->GetCellData()->SetNormals(array(this->ofCells)); }
 
@@ -40,6 +47,8 @@ protected:
   std::vector<glm::vec3> ofPoints = { { 0, 0, 2 }, { 1, 0, 1 }, { 0, 1, 1 }, { -1, 0, 1 } };
   const std::vector<glm::vec3> ofCells = { { 0, 1, 1 }, { 1, 0, 1 } };
   // The square's triangles are 0 1 2 and 0 2 3.
+  const std::vector<glm::vec3> corners = { { 0, 0, 0 }, { 1, 0, 0 }, { 1, 1, 0 }, { 0, 0, 0 },
+    { 1, 1, 0 }, { 0, 1, 0 } };
   std::vector<glm::vec3> expectedOfPoints() const
   {
     return { this->ofPoints[0], this->ofPoints[1], this->ofPoints[2], this->ofPoints[0],
@@ -60,20 +69,24 @@ TEST_F(Normals, AreAbsentWithoutArrays)
 TEST_F(Normals, OfPointsAreCopiedUnchanged)
 {
   this->addPointNormals();
-  EXPECT_EQ(this->onlyGeometry().normals, this->expectedOfPoints());
+  EXPECT_EQ(this->atCorners(), this->expectedOfPoints());
 }
 
 TEST_F(Normals, OfPointsWinOverThoseOfCells)
 {
   this->addPointNormals();
   this->addCellNormals();
-  EXPECT_EQ(this->onlyGeometry().normals, this->expectedOfPoints());
+  EXPECT_EQ(this->atCorners(), this->expectedOfPoints());
 }
 
-TEST_F(Normals, OfCellsAreRepeatedAtTheCorners)
+TEST_F(Normals, OfCellsAreStoredOnceATriangle)
 {
   this->addCellNormals();
-  EXPECT_EQ(this->onlyGeometry().normals, this->expectedOfCells());
+  EXPECT_EQ(this->atCorners(), this->expectedOfCells());
+  const hrt::Geometry& g = *this->snapshot->parts[0].geometry;
+  EXPECT_EQ(g.normals.attachment, hrt::Attachment::Triangles);
+  EXPECT_EQ(g.normals.values, this->ofCells);
+  EXPECT_EQ(g.vertexCount(), 4u) << "normals of cells part no vertices";
 }
 
 TEST_F(Normals, FlatShadingForgetsThoseOfPoints)
@@ -88,7 +101,7 @@ TEST_F(Normals, FlatShadingStillUsesThoseOfCells)
   this->addPointNormals();
   this->addCellNormals();
   this->actor->GetProperty()->SetInterpolationToFlat();
-  EXPECT_EQ(this->onlyGeometry().normals, this->expectedOfCells());
+  EXPECT_EQ(this->atCorners(), this->expectedOfCells());
 }
 
 TEST_F(Normals, OfDoublePrecisionAreRounded)
@@ -100,20 +113,23 @@ TEST_F(Normals, OfDoublePrecisionAreRounded)
     normals->InsertNextTuple3(0.1, 0.2, 0.3 + i);
   }
   this->mesh->GetPointData()->SetNormals(normals);
-  EXPECT_EQ(this->onlyGeometry().normals[1], glm::vec3(0.1f, 0.2f, 1.3f));
+  EXPECT_EQ(this->atCorners()[1], glm::vec3(0.1f, 0.2f, 1.3f));
 }
 
 TEST_F(Normals, ThatAreNotNumbersAreReplacedByTheFaces)
 {
   this->ofPoints[1].y = std::numeric_limits<float>::quiet_NaN(); // of the first triangle only
   this->addPointNormals();
-  const hrt::Geometry& g = this->onlyGeometry();
-  ASSERT_EQ(g.normals.size(), 6u);
+  const std::vector<glm::vec3> normals = this->atCorners();
+  ASSERT_EQ(normals.size(), 6u);
   for (int i = 0; i < 3; ++i)
   {
-    EXPECT_EQ(g.normals[i], glm::vec3(0, 0, 1));
-    EXPECT_EQ(g.normals[3 + i], this->expectedOfPoints()[3 + i]);
+    EXPECT_EQ(normals[i], glm::vec3(0, 0, 1));
+    EXPECT_EQ(normals[3 + i], this->expectedOfPoints()[3 + i]);
   }
+  const hrt::Geometry& g = *this->snapshot->parts[0].geometry;
+  EXPECT_EQ(g.vertexCount(), 6u) << "the triangles share no vertex now";
+  EXPECT_EQ(hrt::meshes::cornersOf(g), this->corners) << "but lie where they did";
   EXPECT_EQ(this->snapshot->refusals.total(), 0u);
   EXPECT_TRUE(this->messages.warnings.empty()) << "VTK says nothing of them either";
 }
@@ -122,7 +138,7 @@ TEST_F(Normals, OfLengthZeroAreReplacedByTheFaces)
 {
   this->ofPoints.assign(4, glm::vec3(0));
   this->addPointNormals();
-  EXPECT_EQ(this->onlyGeometry().normals, std::vector<glm::vec3>(6, glm::vec3(0, 0, 1)));
+  EXPECT_EQ(this->atCorners(), std::vector<glm::vec3>(6, glm::vec3(0, 0, 1)));
   EXPECT_TRUE(this->messages.warnings.empty());
 }
 

@@ -79,23 +79,18 @@ TEST(PlacedParts, DividesByWAndLeavesProjectionsAlone)
 TEST(PlacedParts, NumbersTrianglesUpToTheLimit)
 {
   TriangleNumbers numbers(10);
-  hrt::TriangleId first = 99;
-  EXPECT_TRUE(numbers.take(7, first));
-  EXPECT_EQ(first, 0u);
-  EXPECT_FALSE(numbers.take(4, first));
-  EXPECT_EQ(first, 0u) << "a refusal takes nothing";
-  EXPECT_TRUE(numbers.take(3, first));
-  EXPECT_EQ(first, 7u);
-  EXPECT_EQ(numbers.taken(), 10u);
-  EXPECT_FALSE(numbers.take(std::numeric_limits<std::uint64_t>::max(), first));
+  EXPECT_TRUE(numbers.take(7));
+  EXPECT_FALSE(numbers.take(4));
+  EXPECT_TRUE(numbers.take(3)) << "a refusal takes nothing";
+  EXPECT_FALSE(numbers.take(1));
+  EXPECT_FALSE(numbers.take(std::numeric_limits<std::uint64_t>::max()));
 }
 
 TEST(PlacedParts, TheLimitLeavesRoomForNoTriangle)
 {
   TriangleNumbers numbers;
-  hrt::TriangleId first = 0;
-  EXPECT_TRUE(numbers.take(hrt::kMaximumTriangles, first));
-  EXPECT_FALSE(numbers.take(1, first));
+  EXPECT_TRUE(numbers.take(hrt::kMaximumTriangles));
+  EXPECT_FALSE(numbers.take(1));
 }
 
 } // anonymous namespace

@@ -43,7 +43,7 @@ TEST_F(Refusals, PointsThatAreNotFiniteOrTooLarge)
       this->messages.warnings.clear();
       auto actor = this->addMesh(makeMesh(broken, { { 0, 1, 2 }, { 0, 2, 3 }, { 1, 2, 3 } }));
       const hrt::Geometry& g = this->onlyGeometry();
-      EXPECT_EQ(g.cellIds, (std::vector<std::int64_t>{ 0 }));
+      EXPECT_EQ(g.cellIds, (hrt::CellIds{ 0 }));
       EXPECT_EQ(g.boundsMax, glm::vec3(1, 1, 0));
       EXPECT_EQ(this->snapshot->refusals.nonFinitePoints, 2u);
       EXPECT_EQ(this->snapshot->refusals.total(), 2u);
@@ -75,7 +75,7 @@ TEST_F(Refusals, IndicesOutOfRange)
 {
   auto actor =
     this->addMesh(makeMesh(this->points, { { 0, 1, 2 }, { 0, 2, 4 }, { -1, 2, 3 }, { 0, 2, 3 } }));
-  EXPECT_EQ(this->onlyGeometry().cellIds, (std::vector<std::int64_t>{ 0, 3 }));
+  EXPECT_EQ(this->onlyGeometry().cellIds, (hrt::CellIds{ 0, 3 }));
   EXPECT_EQ(this->snapshot->refusals.invalidIndices, 2u);
   EXPECT_EQ(this->snapshot->refusals.total(), 2u);
   this->expectOneWarning(actor, "2 triangles that name points that do not exist");
@@ -84,7 +84,7 @@ TEST_F(Refusals, IndicesOutOfRange)
 TEST_F(Refusals, APolygonIsRefusedAsAWhole)
 {
   this->addMesh(makeMesh(this->points, { { 0, 1, 2, 3, 99 }, { 0, 1, 2 } }));
-  EXPECT_EQ(this->onlyGeometry().cellIds, (std::vector<std::int64_t>{ 1 }));
+  EXPECT_EQ(this->onlyGeometry().cellIds, (hrt::CellIds{ 1 }));
   EXPECT_EQ(this->snapshot->refusals.invalidIndices, 3u) << "a pentagon is three triangles";
 }
 
@@ -93,7 +93,7 @@ TEST_F(Refusals, AStripLosesOnlyTheTrianglesThatAreBroken)
   auto broken = this->points;
   broken.insert(broken.end(), { { 2, 0, 0 }, { kNaN, 0, 0 } });
   this->addMesh(makeMesh(broken, {}, VTK_DOUBLE, { { 0, 1, 3, 2, 4, 77 }, { 0, 1, 3, 5 } }));
-  EXPECT_EQ(this->onlyGeometry().cellIds, (std::vector<std::int64_t>{ 0, 0, 0, 1 }));
+  EXPECT_EQ(this->onlyGeometry().cellIds, (hrt::CellIds{ 0, 0, 0, 1 }));
   EXPECT_EQ(this->snapshot->refusals.invalidIndices, 1u);
   EXPECT_EQ(this->snapshot->refusals.nonFinitePoints, 1u);
 }
@@ -107,7 +107,7 @@ TEST_F(Refusals, TrianglesWithoutArea)
       { 0, 1, 5 },     // two points in one place
       { 0, 4, 2 },     // three in a line
       { 0, 1, 2 } })); // good
-  EXPECT_EQ(this->onlyGeometry().cellIds, (std::vector<std::int64_t>{ 3 }));
+  EXPECT_EQ(this->onlyGeometry().cellIds, (hrt::CellIds{ 3 }));
   EXPECT_EQ(this->snapshot->refusals.degenerateTriangles, 3u);
   EXPECT_EQ(this->snapshot->refusals.total(), 3u);
   EXPECT_TRUE(this->messages.warnings.empty()) << "VTK draws nothing of them and says nothing";

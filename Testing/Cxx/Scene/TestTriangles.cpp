@@ -41,8 +41,9 @@ TEST_F(Triangles, AreTakenCornerByCorner)
   const hrt::Geometry& g = this->onlyGeometry();
   const std::vector<glm::vec3> expected = { { 0, 0, 0 }, { 1, 0, 0 }, { 1, 1, 0 }, { 0, 0, 0 },
     { 1, 1, 0 }, { 0, 1, 0 } };
-  EXPECT_EQ(g.positions, expected);
-  EXPECT_EQ(g.cellIds, (std::vector<std::int64_t>{ 0, 1 }));
+  EXPECT_EQ(hrt::meshes::cornersOf(g), expected);
+  EXPECT_EQ(g.vertexCount(), 4u) << "what triangles share is stored once";
+  EXPECT_EQ(g.cellIds, (hrt::CellIds{ 0, 1 }));
   EXPECT_EQ(g.boundsMin, glm::vec3(0, 0, 0));
   EXPECT_EQ(g.boundsMax, glm::vec3(1, 1, 0));
   EXPECT_EQ(g.origin, glm::dvec3(0.0));
@@ -55,13 +56,13 @@ TEST_F(Triangles, QuadsAndConvexPolygonsAreFansAsInVTKsMapper)
   this->addMesh(makeMesh({ { 0, 0, 0 }, { 2, 0, 0 }, { 3, 1, 0 }, { 2, 2, 0 }, { 0, 2, 0 } },
     { { 0, 1, 3, 4 }, { 0, 1, 2, 3, 4 } }));
   const hrt::Geometry& g = this->onlyGeometry();
-  ASSERT_EQ(g.cellIds, (std::vector<std::int64_t>{ 0, 0, 1, 1, 1 }));
+  ASSERT_EQ(g.cellIds, (hrt::CellIds{ 0, 0, 1, 1, 1 }));
   for (std::size_t t = 0; t < 5; ++t)
   {
-    EXPECT_EQ(g.positions[3 * t], glm::vec3(0)) << "every triangle of a fan starts at point 0";
+    EXPECT_EQ(g.cornerPositions(t)[0], glm::vec3(0)) << "every triangle of a fan starts at point 0";
   }
-  EXPECT_EQ(g.positions[7], glm::vec3(2, 0, 0));
-  EXPECT_EQ(g.positions[8], glm::vec3(3, 1, 0));
+  EXPECT_EQ(g.cornerPositions(2)[1], glm::vec3(2, 0, 0));
+  EXPECT_EQ(g.cornerPositions(2)[2], glm::vec3(3, 1, 0));
 }
 
 TEST_F(Triangles, ATwistedQuadKeepsVTKsDiagonal)
@@ -70,8 +71,8 @@ TEST_F(Triangles, ATwistedQuadKeepsVTKsDiagonal)
     makeMesh({ { 0, 0, 0 }, { 1, 0, 0.3 }, { 1, 1, 0 }, { 0, 1, 0.3 } }, { { 0, 1, 2, 3 } }));
   const hrt::Geometry& g = this->onlyGeometry();
   ASSERT_EQ(g.triangleCount(), 2u);
-  EXPECT_EQ(g.positions[2], glm::vec3(1, 1, 0));
-  EXPECT_EQ(g.positions[4], glm::vec3(1, 1, 0));
+  EXPECT_EQ(g.cornerPositions(0)[2], glm::vec3(1, 1, 0));
+  EXPECT_EQ(g.cornerPositions(1)[1], glm::vec3(1, 1, 0));
 }
 
 // An arrow head: the second triangle of the fan from point 0 would be turned over.
@@ -174,7 +175,7 @@ TEST_F(Triangles, ASelfCrossingPolygonFallsBackToTheFan)
     makeMesh({ { 0, 0, 0 }, { 2, 2, 0 }, { 2, 0, 0 }, { 0, 1, 0 } }, { { 0, 1, 2, 3 } }));
   const hrt::Geometry& g = this->onlyGeometry();
   ASSERT_EQ(g.triangleCount(), 2u);
-  EXPECT_EQ(g.cellIds, (std::vector<std::int64_t>{ 0, 0 }));
+  EXPECT_EQ(g.cellIds, (hrt::CellIds{ 0, 0 }));
 }
 
 TEST_F(Triangles, StripsAlternateTheirWinding)
@@ -185,7 +186,7 @@ TEST_F(Triangles, StripsAlternateTheirWinding)
   ASSERT_EQ(g.triangleCount(), 3u);
   EXPECT_TRUE(allFace(g, glm::dvec3(0, 0, -1)));
   EXPECT_EQ(totalArea(g), 1.5);
-  EXPECT_EQ(g.cellIds, (std::vector<std::int64_t>{ 0, 0, 0 }));
+  EXPECT_EQ(g.cellIds, (hrt::CellIds{ 0, 0, 0 }));
 }
 
 TEST_F(Triangles, CellIdsCountVertsLinesPolygonsAndStrips)
@@ -195,13 +196,13 @@ TEST_F(Triangles, CellIdsCountVertsLinesPolygonsAndStrips)
   mesh->SetVerts(makeCells({ { 0 }, { 1 } }));
   mesh->SetLines(makeCells({ { 0, 1 }, { 1, 2 }, { 2, 3 } }));
   this->addMesh(mesh);
-  EXPECT_EQ(this->onlyGeometry().cellIds, (std::vector<std::int64_t>{ 5, 6, 6 }));
+  EXPECT_EQ(this->onlyGeometry().cellIds, (hrt::CellIds{ 5, 6, 6 }));
 }
 
 TEST_F(Triangles, PlaceHolderPolygonsKeepTheirNumber)
 {
   this->addMesh(makeMesh({ { 0, 0, 0 }, { 1, 0, 0 }, { 0, 1, 0 } }, { { 0, 1 }, { 0, 1, 2 } }));
-  EXPECT_EQ(this->onlyGeometry().cellIds, (std::vector<std::int64_t>{ 1 }));
+  EXPECT_EQ(this->onlyGeometry().cellIds, (hrt::CellIds{ 1 }));
   EXPECT_EQ(this->snapshot->refusals.total(), 0u);
 }
 
@@ -245,6 +246,30 @@ TEST_F(Triangles, StaticMappersAreNotUpdated)
   EXPECT_GT(this->update().triangleCount, 0u);
 }
 
+TEST_F(Triangles, VerticesAreThePointsThatTrianglesUseInTheirOrder)
+{
+  // Of the points, 0 is used by nobody and 4 only by a triangle without area.
+  this->addMesh(makeMesh(
+    { { 9, 9, 9 }, { 0, 0, 0 }, { 1, 0, 0 }, { 0, 1, 0 }, { 2, 0, 0 }, { 1, 1, 0 } },
+    { { 5, 3, 2 }, { 1, 2, 4 }, { 1, 2, 3 } }));
+  const hrt::Geometry& g = this->onlyGeometry();
+  EXPECT_EQ(g.positions,
+    (std::vector<glm::vec3>{ { 1, 1, 0 }, { 0, 1, 0 }, { 1, 0, 0 }, { 0, 0, 0 } }));
+  EXPECT_EQ(g.triangles,
+    (std::vector<std::array<std::uint32_t, 3>>{ { { 0, 1, 2 } }, { { 3, 2, 1 } } }));
+  EXPECT_EQ(g.cellIds, (hrt::CellIds{ 0, 2 }));
+  EXPECT_EQ(this->snapshot->refusals.degenerateTriangles, 1u);
+}
+
+// Points at one place with values of their own, as where colours or normals break, stay apart.
+TEST_F(Triangles, PointsAtOnePlaceStayApart)
+{
+  this->addMesh(makeMesh({ { 0, 0, 0 }, { 1, 0, 0 }, { 1, 1, 0 }, { 0, 0, 0 }, { 1, 1, 0 },
+                           { 0, 1, 0 } },
+    { { 0, 1, 2 }, { 3, 4, 5 } }));
+  EXPECT_EQ(this->onlyGeometry().vertexCount(), 6u);
+}
+
 // Float coordinates survive exactly, however far from zero they lie.
 TEST_F(Triangles, FarFloatCoordinatesAreExact)
 {
@@ -264,11 +289,13 @@ TEST_F(Triangles, FarFloatCoordinatesAreExact)
   {
     EXPECT_EQ(std::fmod(g.origin[k], 8.0), 0.0) << k;
   }
-  const vtkIdType corners[] = { 0, 1, 2, 0, 2, 3 };
+  const vtkIdType byPoint[] = { 0, 1, 2, 0, 2, 3 };
+  const std::vector<glm::vec3> corners = hrt::meshes::cornersOf(g);
+  ASSERT_EQ(corners.size(), 6u);
   for (int i = 0; i < 6; ++i)
   {
-    EXPECT_EQ(g.origin + glm::dvec3(g.positions[i]), points[corners[i]]) << i;
-    EXPECT_LE(glm::length(g.positions[i]), 3.0f * 8.0f);
+    EXPECT_EQ(g.origin + glm::dvec3(corners[i]), points[byPoint[i]]) << i;
+    EXPECT_LE(glm::length(corners[i]), 3.0f * 8.0f);
   }
 }
 
@@ -290,7 +317,8 @@ TEST_F(Triangles, LargeDoubleCoordinatesKeepTheirDetails)
   const double tolerance = std::ldexp(1.0, -22) + std::ldexp(1.0, -31);
   for (int i = 0; i < 3; ++i)
   {
-    const glm::dvec3 error = glm::abs(g.origin + glm::dvec3(g.positions[i]) - points[i]);
+    const glm::dvec3 error =
+      glm::abs(g.origin + glm::dvec3(g.cornerPositions(0)[i]) - points[i]);
     EXPECT_LE(glm::max(error.x, glm::max(error.y, error.z)), tolerance) << i;
   }
   EXPECT_LT(glm::length(this->snapshot->origin - points[0]), 4.0);

@@ -6,8 +6,6 @@
 #include "vtkHybridMaterial.h"
 #include "vtkHybridRayTracingPass.h"
 
-#include "Rendering/Core/Snapshot.h"
-
 #include "vtkActor.h"
 #include "vtkNew.h"
 #include "vtkPolyDataMapper.h"
