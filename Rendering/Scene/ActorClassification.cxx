@@ -3,8 +3,6 @@
 #include "Rendering/Scene/ActorClassification.h"
 
 #include "vtkActor.h"
-#include "vtkMapper.h"
-#include "vtkPlaneCollection.h"
 #include "vtkProp.h"
 #include "vtkProperty.h"
 #include "vtkShaderProperty.h"
@@ -28,12 +26,6 @@ bool isAnyOf(vtkObject* object, const char* const (&names)[N])
 {
   return std::any_of(
     std::begin(names), std::end(names), [object](const char* name) { return object->IsA(name); });
-}
-
-bool hasClippingPlanes(vtkMapper* mapper)
-{
-  vtkPlaneCollection* planes = mapper->GetClippingPlanes();
-  return planes && planes->GetNumberOfItems() > 0;
 }
 
 bool hasOwnShaders(vtkActor* actor)
@@ -75,8 +67,6 @@ const char* describe(LeftToVTK reason)
       return "the mapper's input is of a kind that has no surface";
     case LeftToVTK::SubPieces:
       return "the mapper streams its input in pieces";
-    case LeftToVTK::ClippingPlanes:
-      return "clipped by the mapper's planes";
     case LeftToVTK::ProjectiveMatrix:
       return "the matrix is projective";
     case LeftToVTK::SingularMatrix:
@@ -161,13 +151,9 @@ LeftToVTK classifyActor(vtkActor* actor)
 }
 
 //------------------------------------------------------------------------------
-LeftToVTK classifySurface(vtkActor* actor, vtkMapper* mapper, bool isGlass)
+LeftToVTK classifySurface(vtkActor* actor, bool isGlass)
 {
   vtkProperty* property = actor->GetProperty();
-  if (hasClippingPlanes(mapper))
-  {
-    return LeftToVTK::ClippingPlanes;
-  }
   if (actor->GetTexture() || property->GetNumberOfTextures() > 0)
   {
     return LeftToVTK::Texture;

@@ -6,7 +6,6 @@
 #pragma once
 
 class vtkActor;
-class vtkMapper;
 class vtkProp;
 
 namespace hrt
@@ -32,7 +31,6 @@ enum class LeftToVTK
   OtherMapper,
   OtherData,
   SubPieces,
-  ClippingPlanes,
   ProjectiveMatrix,
   SingularMatrix,
   OutOfRange, // its bounds in the world
@@ -61,7 +59,7 @@ LeftToVTK classifyProp(vtkProp* prop);
 LeftToVTK classifyActor(vtkActor* actor);
 
 // The rest of the rules, for an actor that passed and whose pipeline is up to date.
-LeftToVTK classifySurface(vtkActor* actor, vtkMapper* mapper, bool isGlass);
+LeftToVTK classifySurface(vtkActor* actor, bool isGlass);
 
 // Some light passes, by opacity of either side, of scalars, or by force.
 bool isTranslucent(vtkActor* actor);

@@ -18,13 +18,6 @@ namespace
 {
 
 //------------------------------------------------------------------------------
-std::uint64_t nextVersion()
-{
-  static std::atomic<std::uint64_t> last{ 0 };
-  return ++last;
-}
-
-//------------------------------------------------------------------------------
 // All but the version; the bounds follow from the positions.
 bool sameContent(const Geometry& a, const Geometry& b)
 {
@@ -59,6 +52,13 @@ void nameOriginalCells(vtkDataArray* originals, Geometry& geometry)
 } // anonymous namespace
 
 //------------------------------------------------------------------------------
+std::uint64_t nextGeometryVersion()
+{
+  static std::atomic<std::uint64_t> last{ 0 };
+  return ++last;
+}
+
+//------------------------------------------------------------------------------
 GeometryCache::Signature GeometryCache::signatureOf(const GeometrySource& source)
 {
   // A mapper's modification time includes that of its look-up table.
@@ -84,7 +84,7 @@ ExtractionPointer GeometryCache::extract(const GeometrySource& source, const Ext
   }
   else
   {
-    geometry->version = nextVersion();
+    geometry->version = nextGeometryVersion();
     extraction->geometry = geometry;
   }
   return extraction;

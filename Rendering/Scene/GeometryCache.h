@@ -46,6 +46,9 @@ struct GeometrySource
   bool plain = false; // scalars do not count
 };
 
+// For a geometry that is made outside of the cache: unique among all.
+std::uint64_t nextGeometryVersion();
+
 class GeometryCache
 {
 public:

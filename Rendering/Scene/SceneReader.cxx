@@ -212,7 +212,7 @@ LeftToVTK SceneReader::addPieces(const ActorPath& path, const MapperReading& rea
 {
   Snapshot& snapshot = *draft.frame.snapshot;
   const bool isGlass = keys.indexOfRefraction > 0.0;
-  LeftToVTK left = classifySurface(path.actor, path.actor->GetMapper(), isGlass);
+  LeftToVTK left = classifySurface(path.actor, isGlass);
   if (!seenByRays(left))
   {
     this->keep(path);
@@ -231,8 +231,11 @@ LeftToVTK SceneReader::addPieces(const ActorPath& path, const MapperReading& rea
   part.castsShadow = keys.castsShadow && !isGlass && !translucent;
   part.tintsShadow = keys.castsShadow && !isGlass && translucent;
 
+  const std::vector<ClippingPlane> planes =
+    clippingPlanesOf(path.actor->GetMapper(), part.localToWorld);
+
   memory.pieces.clear();
-  std::size_t surfaces = 0, otherCells = 0;
+  std::size_t surfaces = 0, otherCells = 0, emptied = 0; // by planes
   for (const SurfacePiece& piece : reading.pieces)
   {
     part.key = keyOfPiece(path.key, piece.key);
@@ -248,9 +251,11 @@ LeftToVTK SceneReader::addPieces(const ActorPath& path, const MapperReading& rea
     }
     const ExtractionPointer extraction =
       this->extract(path, piece, part.key, snapshot.refusals);
-    part.geometry = extraction->geometry;
+    part.geometry = planes.empty() ? extraction->geometry
+                                   : memory.clipped.get(part.key, extraction->geometry, planes);
     if (part.geometry->triangleCount() == 0)
     {
+      emptied += extraction->geometry->triangleCount() > 0 ? 1 : 0;
       continue;
     }
     ++surfaces;
@@ -262,8 +267,8 @@ LeftToVTK SceneReader::addPieces(const ActorPath& path, const MapperReading& rea
   }
   if (surfaces == 0)
   {
-    // Points and lines without a surface are nothing that was refused.
-    snapshot.refusals.emptyParts += otherCells > 0 ? 0 : 1;
+    // Points and lines without a surface, and what planes cut away, are nothing that was refused.
+    snapshot.refusals.emptyParts += otherCells + emptied > 0 ? 0 : 1;
     return otherCells > 0 ? LeftToVTK::NoSurface : left;
   }
   return left;

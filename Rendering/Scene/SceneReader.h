@@ -9,6 +9,7 @@
 #include "Rendering/Scene/ActorPaths.h"
 #include "Rendering/Scene/Adapters/MapperAdapter.h"
 #include "Rendering/Scene/AssemblyKeys.h"
+#include "Rendering/Scene/ClippedPieces.h"
 #include "Rendering/Scene/Complaints.h"
 #include "Rendering/Scene/GeometryCache.h"
 #include "Rendering/Scene/HostedCells.h"
@@ -86,6 +87,7 @@ private:
     std::unique_ptr<MapperAdapter> adapter; // null: no kind reads the mapper
     std::vector<std::uint64_t> pieces;      // keys of the last frame's
     std::unordered_map<std::uint64_t, HostedCells> hosted; // by piece
+    ClippedPieces clipped;
     bool used = false;
   };
   PathMemory& memoryOf(const ActorPath& path);

@@ -36,7 +36,12 @@ protected:
 
   std::vector<std::int64_t> cells(const hrt::Part& part)
   {
-    return part.geometry->cellIds;
+    std::vector<std::int64_t> ids;
+    for (std::size_t i = 0; i < part.geometry->triangleCount(); ++i)
+    {
+      ids.push_back(part.geometry->cellIds[i]);
+    }
+    return ids;
   }
 
   vtkNew<vtkActor> actor;
@@ -97,7 +102,7 @@ TEST_F(Mappers, DataSetsAreColouredByTheMappersOwnSettings)
   const hrt::Snapshot& s = this->update();
   const hrt::Geometry& g = *s.parts.at(0).geometry;
   ASSERT_EQ(g.colorSource, hrt::ColorSource::Corner);
-  EXPECT_NE(g.colors.front(), g.colors.back());
+  EXPECT_NE(g.colors.values.front(), g.colors.values.back());
   mapper->ScalarVisibilityOff();
   EXPECT_EQ(this->update().parts.at(0).geometry->colorSource, hrt::ColorSource::Property);
 }
@@ -238,7 +243,7 @@ TEST_F(Composite, BlocksAreColouredByTheirOwnScalars)
   const hrt::Snapshot& s = this->update();
   const hrt::Geometry &first = *s.parts.at(0).geometry, &second = *s.parts.at(1).geometry;
   ASSERT_EQ(first.colorSource, hrt::ColorSource::Corner);
-  EXPECT_NE(first.colors.front(), second.colors.front());
+  EXPECT_NE(first.colors.values.front(), second.colors.values.front());
   EXPECT_EQ(s.parts.at(2).geometry->colorSource, hrt::ColorSource::Property);
   const std::uint64_t version = second.version;
   this->squares[0]->GetPointData()->GetScalars()->Fill(0.5);
