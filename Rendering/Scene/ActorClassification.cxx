@@ -85,8 +85,10 @@ const char* describe(LeftToVTK reason)
       return "its bounds in the world are too large";
     case LeftToVTK::TooManyTriangles:
       return "the scene has too many triangles";
-    case LeftToVTK::Texture:
-      return "textured";
+    case LeftToVTK::MipMappedTexture:
+      return "its texture has mip maps";
+    case LeftToVTK::OtherTexture:
+      return "its texture is not an image that can be read";
     case LeftToVTK::EdgeVisibility:
       return "edges are shown";
     case LeftToVTK::PhysicallyBased:
@@ -122,7 +124,8 @@ bool seenByRays(LeftToVTK reason)
   {
     case LeftToVTK::No:
     case LeftToVTK::Translucent:
-    case LeftToVTK::Texture:
+    case LeftToVTK::MipMappedTexture:
+    case LeftToVTK::OtherTexture:
     case LeftToVTK::EdgeVisibility:
     case LeftToVTK::PhysicallyBased:
     case LeftToVTK::ShaderReplacements:
@@ -167,10 +170,6 @@ LeftToVTK classifySurface(vtkActor* actor, vtkMapper* mapper, bool isGlass)
   if (hasClippingPlanes(mapper))
   {
     return LeftToVTK::ClippingPlanes;
-  }
-  if (actor->GetTexture() || property->GetNumberOfTextures() > 0)
-  {
-    return LeftToVTK::Texture;
   }
   if (property->GetEdgeVisibility())
   {
