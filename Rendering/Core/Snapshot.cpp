@@ -89,12 +89,19 @@ bool sameColors(const Light& a, const Light& b)
   return a.color == b.color && a.attenuation == b.attenuation && a.exponent == b.exponent;
 }
 
+// Holes are a matter of what is seen where, as triangles are.
+bool sameHoles(const Part& a, const Part& b)
+{
+  return a.perforated == b.perforated &&
+    (!a.perforated || a.material.textures == b.material.textures);
+}
+
 bool sameTriangles(const Part& a, const Part& b)
 {
   return a.key == b.key && a.geometry->version == b.geometry->version &&
     a.firstTriangle == b.firstTriangle && a.visibleToCamera == b.visibleToCamera &&
     a.visibleToRays == b.visibleToRays && a.castsShadow == b.castsShadow &&
-    a.tintsShadow == b.tintsShadow;
+    a.tintsShadow == b.tintsShadow && sameHoles(a, b);
 }
 
 bool sameCulling(const Material& a, const Material& b)

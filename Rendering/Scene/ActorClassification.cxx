@@ -75,8 +75,10 @@ const char* describe(LeftToVTK reason)
       return "its bounds in the world are too large";
     case LeftToVTK::TooManyTriangles:
       return "the scene has too many triangles";
-    case LeftToVTK::Texture:
-      return "textured";
+    case LeftToVTK::MipMappedTexture:
+      return "its texture has mip maps";
+    case LeftToVTK::OtherTexture:
+      return "its texture is not an image that can be read";
     case LeftToVTK::EdgeVisibility:
       return "edges are shown";
     case LeftToVTK::PhysicallyBased:
@@ -112,7 +114,8 @@ bool seenByRays(LeftToVTK reason)
   {
     case LeftToVTK::No:
     case LeftToVTK::Translucent:
-    case LeftToVTK::Texture:
+    case LeftToVTK::MipMappedTexture:
+    case LeftToVTK::OtherTexture:
     case LeftToVTK::EdgeVisibility:
     case LeftToVTK::PhysicallyBased:
     case LeftToVTK::ShaderReplacements:
@@ -154,10 +157,6 @@ LeftToVTK classifyActor(vtkActor* actor)
 LeftToVTK classifySurface(vtkActor* actor, bool isGlass)
 {
   vtkProperty* property = actor->GetProperty();
-  if (actor->GetTexture() || property->GetNumberOfTextures() > 0)
-  {
-    return LeftToVTK::Texture;
-  }
   if (property->GetEdgeVisibility())
   {
     return LeftToVTK::EdgeVisibility;

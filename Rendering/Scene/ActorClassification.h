@@ -37,7 +37,8 @@ enum class LeftToVTK
   TooManyTriangles,
 
   // Its triangles are known, and seen in mirrors, but its picture is more than shaded triangles.
-  Texture,
+  MipMappedTexture,
+  OtherTexture,
   EdgeVisibility,
   PhysicallyBased,
   ShaderReplacements

@@ -9,7 +9,10 @@
 #include "Rendering/Scene/PlacedParts.h"
 
 #include "vtkActor.h"
+#include "vtkDataArray.h"
 #include "vtkMapper.h"
+#include "vtkPointData.h"
+#include "vtkPolyData.h"
 #include "vtkProperty.h"
 #include "vtkRenderer.h"
 
@@ -61,6 +64,45 @@ void placeOrigin(const SceneBox& box, Snapshot& snapshot)
     snapshot.boundsMax = box.upper;
     snapshot.origin = 0.5 * box.lower + 0.5 * box.upper;
   }
+}
+
+//------------------------------------------------------------------------------
+LeftToVTK leftByTextures(TextureReading::State state)
+{
+  switch (state)
+  {
+    case TextureReading::State::MipMapped:
+      return LeftToVTK::MipMappedTexture;
+    case TextureReading::State::Unreadable:
+      return LeftToVTK::OtherTexture;
+    default:
+      return LeftToVTK::No;
+  }
+}
+
+//------------------------------------------------------------------------------
+// Coordinates of one component are those of the lowest row, whatever the transform.
+Textures texturesOf(const Textures& textures, vtkPolyData* data)
+{
+  Textures result = textures;
+  vtkDataArray* coordinates = data->GetPointData()->GetTCoords();
+  if (coordinates && coordinates->GetNumberOfComponents() == 1)
+  {
+    result.transformY = glm::vec3(0.0f);
+  }
+  return result;
+}
+
+//------------------------------------------------------------------------------
+// What of the light passes a part whose material is known.
+void letLightThrough(Part& part, const RayKeys& keys, bool translucent)
+{
+  const Texture::Alpha alpha = part.material.textures.alpha;
+  const bool glass = part.material.isGlass();
+  const bool solid = !translucent && alpha == Texture::Alpha::Opaque;
+  part.perforated = !glass && !translucent && alpha == Texture::Alpha::Holes;
+  part.castsShadow = keys.castsShadow && !glass && solid;
+  part.tintsShadow = keys.castsShadow && !glass && !solid;
 }
 
 } // namespace
@@ -185,8 +227,8 @@ LeftToVTK SceneReader::addPart(const ActorPath& path, const Part& part, Draft& d
 }
 
 //------------------------------------------------------------------------------
-ExtractionPointer SceneReader::extract(
-  const ActorPath& path, const SurfacePiece& piece, std::uint64_t key, Refusals& refusals)
+ExtractionPointer SceneReader::extract(const ActorPath& path, const SurfacePiece& piece,
+  std::uint64_t key, bool textured, Refusals& refusals)
 {
   GeometrySource source;
   source.actor = path.actor;
@@ -195,6 +237,7 @@ ExtractionPointer SceneReader::extract(
   source.originalCells = piece.originalCells;
   source.flat = path.actor->GetProperty()->GetInterpolation() == VTK_FLAT;
   source.plain = piece.overrides.color;
+  source.textured = textured;
   bool fresh = false;
   ExtractionPointer extraction = this->Geometries.get(key, source, fresh);
   add(extraction->report, refusals);
@@ -226,10 +269,12 @@ LeftToVTK SceneReader::addPieces(const ActorPath& path, const MapperReading& rea
     this->keep(path);
     return byMatrix;
   }
-  part.visibleToCamera = left == LeftToVTK::No;
+  const TextureReading images = this->Images.read(path.actor);
+  if (left == LeftToVTK::No)
+  {
+    left = leftByTextures(images.state);
+  }
   const bool translucent = isTranslucent(path.actor);
-  part.castsShadow = keys.castsShadow && !isGlass && !translucent;
-  part.tintsShadow = keys.castsShadow && !isGlass && translucent;
 
   const std::vector<ClippingPlane> planes =
     clippingPlanesOf(path.actor->GetMapper(), part.localToWorld);
@@ -249,8 +294,8 @@ LeftToVTK SceneReader::addPieces(const ActorPath& path, const MapperReading& rea
         draft.frame.hosted.push_back({ shown, path.props.front() });
       }
     }
-    const ExtractionPointer extraction =
-      this->extract(path, piece, part.key, snapshot.refusals);
+    const ExtractionPointer extraction = this->extract(
+      path, piece, part.key, !images.textures.layers.empty(), snapshot.refusals);
     part.geometry = planes.empty() ? extraction->geometry
                                    : memory.clipped.get(part.key, extraction->geometry, planes);
     if (part.geometry->triangleCount() == 0)
@@ -262,6 +307,16 @@ LeftToVTK SceneReader::addPieces(const ActorPath& path, const MapperReading& rea
     part.source.block = piece.block;
     part.material =
       extractMaterial(path.actor, keys, part.geometry->colorSource, piece.overrides);
+    if (!part.geometry->textureCoordinates.empty())
+    {
+      part.material.textures = texturesOf(images.textures, piece.data);
+    }
+    letLightThrough(part, keys, translucent);
+    if (left == LeftToVTK::No && !isGlass && part.material.textures.alpha == Texture::Alpha::Mixed)
+    {
+      left = LeftToVTK::Translucent;
+    }
+    part.visibleToCamera = left == LeftToVTK::No;
     const LeftToVTK byNumber = this->addPart(path, part, draft);
     left = left != LeftToVTK::No ? left : byNumber;
   }
@@ -384,6 +439,7 @@ Frame SceneReader::read(
 SceneReader::Messages SceneReader::endFrame()
 {
   this->Geometries.endFrame();
+  this->Images.endFrame();
   this->Keys.endFrame();
   for (auto it = this->Paths.begin(); it != this->Paths.end();)
   {

@@ -14,6 +14,7 @@
 #include "Rendering/Scene/GeometryCache.h"
 #include "Rendering/Scene/HostedCells.h"
 #include "Rendering/Scene/MaterialExtraction.h"
+#include "Rendering/Scene/TextureExtraction.h"
 
 #include "vtkActor.h"
 #include "vtkMapper.h"
@@ -99,13 +100,14 @@ private:
   LeftToVTK addPart(const ActorPath& path, const Part& part, Draft& draft);
   LeftToVTK checkMatrix(const ActorPath& path, Snapshot& snapshot, glm::dmat4& localToWorld);
   ExtractionPointer extract(const ActorPath& path, const SurfacePiece& piece, std::uint64_t key,
-    Refusals& refusals);
+    bool textured, Refusals& refusals);
   void addPath(const ActorPath& path, Draft& draft);
   void tellOfOptics(const ActorPath& path, LeftToVTK left);
   void addLights(vtkRenderer* renderer, const ReaderSettings& settings, Snapshot& snapshot);
 
   std::unordered_map<std::uint64_t, PathMemory> Paths;
   GeometryCache Geometries;
+  TextureCache Images;
   AssemblyKeys Keys;
   Complaints Warnings;
   Complaints Errors;

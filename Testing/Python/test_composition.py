@@ -70,7 +70,7 @@ def edges():
     return ball(-0.4, 0.4, EdgeVisibility=True, Color=(0.9, 0.4, 0.4))
 
 
-def textured():
+def mip_mapped():
     canvas = vtkImageCanvasSource2D()
     canvas.SetScalarTypeToUnsignedChar()
     canvas.SetNumberOfScalarComponents(3)
@@ -81,6 +81,8 @@ def textured():
     canvas.FillBox(4, 11, 4, 11)
     texture = vtkTexture()
     texture.SetInputConnection(canvas.GetOutputPort())
+    texture.InterpolateOn()
+    texture.MipmapOn()
     actor = scenes.actor_of(scenes.plane(1.0, -0.3))
     actor.SetTexture(texture)
     return actor
@@ -124,7 +126,7 @@ def volume(mapper=None):
     return actor
 
 
-GUESTS = [lines, points, wireframe, edges, textured, translucent, physically_based, text, volume]
+GUESTS = [lines, points, wireframe, edges, mip_mapped, translucent, physically_based, text, volume]
 
 
 def compare(renderer, render):

@@ -70,6 +70,7 @@ private:
     dropTriangleValues(left.normals);
     dropTriangleValues(left.colors);
     dropTriangleValues(left.coordinates);
+    dropTriangleValues(left.textureCoordinates);
     return left;
   }
   template <class T>
@@ -98,6 +99,7 @@ private:
       appendBetween(this->Left.normals, a, b, t);
       appendBetween(this->Left.colors, a, b, t);
       appendBetween(this->Left.coordinates, a, b, t);
+      appendBetween(this->Left.textureCoordinates, a, b, t);
     }
     return added.first->second;
   }
@@ -140,6 +142,8 @@ private:
     this->appendTriangleValue(this->Left.normals, this->From.normals, of);
     this->appendTriangleValue(this->Left.colors, this->From.colors, of);
     this->appendTriangleValue(this->Left.coordinates, this->From.coordinates, of);
+    this->appendTriangleValue(
+      this->Left.textureCoordinates, this->From.textureCoordinates, of);
   }
   template <class T>
   static void appendTriangleValue(Attribute<T>& left, const Attribute<T>& from, std::size_t of)
@@ -197,6 +201,7 @@ void tidy(Geometry& mesh)
   keepVertices(kept, mesh.normals);
   keepVertices(kept, mesh.colors);
   keepVertices(kept, mesh.coordinates);
+  keepVertices(kept, mesh.textureCoordinates);
   mesh.boundsMin = glm::vec3(0.0f);
   mesh.boundsMax = glm::vec3(-1.0f);
   if (!mesh.positions.empty())

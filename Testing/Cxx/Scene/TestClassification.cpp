@@ -125,20 +125,26 @@ TEST_F(Classification, ClippingPlanesCutTheSurface)
   EXPECT_EQ(this->snapshot->boundsMin.x, 0.0);
 }
 
-TEST_F(Classification, Textures)
+TEST_F(Classification, TexturesThatAreNotTraced)
 {
   vtkNew<vtkImageData> image;
   image->SetDimensions(2, 2, 1);
   image->AllocateScalars(VTK_UNSIGNED_CHAR, 3);
   vtkNew<vtkTexture> texture;
   texture->SetInputData(image);
-  texture->UseSRGBColorSpaceOn(); // else vtkProperty refuses it
   this->actor->SetTexture(texture);
-  this->expectLeftButSeen("textured", true);
+  this->expectTraced();
+  texture->MipmapOn();
+  this->expectTraced(); // without interpolation VTK uses none
+  texture->InterpolateOn();
+  this->expectLeftButSeen("mip maps", true);
+  texture->MipmapOff();
+  this->expectTraced();
+  image->SetDimensions(2, 2, 2);
+  image->AllocateScalars(VTK_UNSIGNED_CHAR, 3);
+  this->expectLeftButSeen("not an image", true);
   this->actor->SetTexture(nullptr);
   this->expectTraced();
-  this->property->SetTexture("albedoTex", texture);
-  this->expectLeftButSeen("textured", true);
 }
 
 TEST_F(Classification, Edges)
