@@ -94,12 +94,19 @@ bool sameCopies(const Part& a, const Part& b)
   return (a.copies ? a.copies->version : 0) == (b.copies ? b.copies->version : 0);
 }
 
+// Holes are a matter of what is seen where, as triangles are.
+bool sameHoles(const Part& a, const Part& b)
+{
+  return a.perforated == b.perforated &&
+    (!a.perforated || a.material.textures == b.material.textures);
+}
+
 bool sameTriangles(const Part& a, const Part& b)
 {
   return a.key == b.key && a.geometry->version == b.geometry->version && sameCopies(a, b) &&
     a.firstTriangle == b.firstTriangle && a.visibleToCamera == b.visibleToCamera &&
     a.visibleToRays == b.visibleToRays && a.castsShadow == b.castsShadow &&
-    a.tintsShadow == b.tintsShadow;
+    a.tintsShadow == b.tintsShadow && sameHoles(a, b);
 }
 
 bool sameCulling(const Material& a, const Material& b)

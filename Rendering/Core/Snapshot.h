@@ -9,6 +9,7 @@
 
 #include "Rendering/Core/Copies.h"
 #include "Rendering/Core/Geometry/Geometry.h"
+#include "Rendering/Core/Scene/Texture.h"
 
 #include <glm/glm.hpp>
 
@@ -63,6 +64,7 @@ struct Material
   bool cullBack = false;
   float reflectance = 0.0f;    // [0, 1]: share of the mirror image in the colour
   float indexOfRefraction = 0; // 0: not glass; else the ratio inside : outside, >= 1
+  Textures textures;           // of a part whose geometry has texture coordinates
 
   bool isMirror() const { return reflectance > 0.0f; }
   bool isGlass() const { return indexOfRefraction > 0.0f; }
@@ -72,7 +74,7 @@ struct Material
   {
     return front == o.front && back == o.back && lit == o.lit && cullFront == o.cullFront &&
       cullBack == o.cullBack && reflectance == o.reflectance &&
-      indexOfRefraction == o.indexOfRefraction;
+      indexOfRefraction == o.indexOfRefraction && textures == o.textures;
   }
   bool operator!=(const Material& o) const { return !(*this == o); }
 };
@@ -98,7 +100,13 @@ struct Part
   bool visibleToCamera = true; // in the object intersection buffer; else VTK draws the actor itself
   bool visibleToRays = true;   // seen by reflection and refraction rays
   bool castsShadow = true;     // and lets no light through
-  bool tintsShadow = false;    // casts one, but is translucent: takes its share of the light
+  // Casts one, but light may pass: where it is translucent or perforated it takes its share.
+  bool tintsShadow = false;
+  // Its textures have holes: there it does not exist, for camera, rays and light alike.
+  bool perforated = false;
+
+  // A shadow map knows depths, and holes in them, but no shares.
+  bool castsShadowInMaps() const { return castsShadow || (perforated && tintsShadow); }
 
   std::size_t copyCount() const { return copies ? copies->count() : 1; }
   // Of all copies together.

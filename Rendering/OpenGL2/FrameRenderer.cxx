@@ -160,7 +160,8 @@ std::string FrameRenderer::runStage(Stage stage, const Settings& settings)
       return this->readBackAndTrace(settings);
     case Stage::PrimaryShading:
       return !settings.shadesOnCPU()
-        ? this->OnGPU.shade(snapshot, settings.tracedBounds, this->picture())
+        ? this->OnGPU.shade(
+            snapshot, settings.tracedBounds, this->picture(), this->Statistics)
         : pipelined ? std::string() // goes on when the frame is over
                     : this->trace(settings);
     case Stage::SecondaryRays:
@@ -183,8 +184,13 @@ std::string FrameRenderer::show(std::size_t picture, const PixelBounds& bounds, 
 //------------------------------------------------------------------------------
 std::string FrameRenderer::drawVisibility(const Snapshot& snapshot, const Settings& settings)
 {
+  const std::string error = this->OnGPU.prepareDrawing(snapshot, this->Statistics);
+  if (!error.empty())
+  {
+    return error;
+  }
   ObjectIntersectionBuffer& hits = this->picture().hits;
-  if (!hits.draw(this->Pool.window(), snapshot, this->OnGPU.geometry(),
+  if (!hits.draw(this->Pool.window(), snapshot, this->OnGPU.tables(),
         this->Statistics.plan.rasterised, settings.tracedBounds))
   {
     return "the object intersection buffer could not be drawn";

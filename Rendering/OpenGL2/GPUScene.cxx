@@ -3,6 +3,8 @@
 
 #include "vtkOpenGLRenderWindow.h"
 
+#include <algorithm>
+
 namespace hrt
 {
 namespace gl
@@ -12,6 +14,7 @@ namespace gl
 GPUScene::GPUScene(ObjectPool& pool, const DepthConvention& convention)
   : Pool(pool)
   , Geometry(pool)
+  , Images(pool)
   , Tables(pool)
   , Shadows(pool, convention)
   , Caster(pool)
@@ -48,14 +51,27 @@ std::string GPUScene::uploadGeometry(const Snapshot& snapshot, FrameStatistics& 
 }
 
 //------------------------------------------------------------------------------
+std::string GPUScene::prepareDrawing(const Snapshot& snapshot, FrameStatistics& statistics)
+{
+  const bool holes = std::any_of(snapshot.parts.begin(), snapshot.parts.end(),
+    [](const Part& part) { return part.perforated; });
+  return holes ? this->updateParts(snapshot, statistics) : std::string();
+}
+
+//------------------------------------------------------------------------------
 std::string GPUScene::drawShadowMaps(const Snapshot& snapshot, FrameStatistics& statistics)
 {
+  const std::string error = this->prepareDrawing(snapshot, statistics);
+  if (!error.empty())
+  {
+    return error;
+  }
   std::vector<bool> draw;
   for (const StageDecision& decision : statistics.plan.shadowMaps)
   {
     draw.push_back(decision.run);
   }
-  if (!this->Shadows.draw(this->Pool.window(), snapshot, this->Geometry, draw))
+  if (!this->Shadows.draw(this->Pool.window(), snapshot, this->tables(), draw))
   {
     return "the shadow maps could not be drawn";
   }
@@ -72,19 +88,38 @@ std::string GPUScene::readBackShadowMaps(FrameStatistics& statistics)
 }
 
 //------------------------------------------------------------------------------
-RayCaster::Inputs GPUScene::inputs(
-  const Snapshot& snapshot, const PixelBounds& bounds, const Picture& picture) const
+std::string GPUScene::updateParts(const Snapshot& snapshot, FrameStatistics& statistics)
 {
-  return { snapshot, this->Geometry, this->Tables, this->Shadows, picture.hits, bounds };
+  std::string error;
+  if (this->Images.update(snapshot, error))
+  {
+    this->Tables.updateParts(snapshot, this->Images);
+  }
+  statistics.bytesUploaded += this->Images.uploadedBytes();
+  return error;
 }
 
 //------------------------------------------------------------------------------
-std::string GPUScene::shade(const Snapshot& snapshot, const PixelBounds& bounds, Picture& picture)
+RayCaster::Inputs GPUScene::inputs(const Snapshot& snapshot, const PixelBounds& bounds,
+  const Picture& picture, const SurfaceFeatures& features) const
 {
+  return { snapshot, this->Geometry, this->Tables, this->Images, this->Shadows, picture.hits, bounds,
+    features };
+}
+
+//------------------------------------------------------------------------------
+std::string GPUScene::shade(const Snapshot& snapshot, const PixelBounds& bounds, Picture& picture,
+  FrameStatistics& statistics)
+{
+  const std::string error = this->updateParts(snapshot, statistics);
+  if (!error.empty())
+  {
+    return error;
+  }
   this->Shadows.updateTable(snapshot);
-  this->Tables.update(snapshot, this->Shadows.slots());
-  return this->Caster.draw(
-           this->Pool.window(), this->inputs(snapshot, bounds, picture), picture.primary)
+  this->Tables.updateLights(snapshot, this->Shadows.slots());
+  return this->Caster.draw(this->Pool.window(),
+           this->inputs(snapshot, bounds, picture, statistics.plan.features), picture.primary)
     ? std::string()
     : "the ray caster could not be drawn";
 }
@@ -93,8 +128,9 @@ std::string GPUScene::shade(const Snapshot& snapshot, const PixelBounds& bounds,
 bool GPUScene::readShadow(const Snapshot& snapshot, const PixelBounds& bounds,
   const Picture& picture, int light, std::vector<float>& share)
 {
+  // Light falls on a surface whatever its colours are.
   return this->Caster.readShadow(
-    this->Pool.window(), this->inputs(snapshot, bounds, picture), light, share);
+    this->Pool.window(), this->inputs(snapshot, bounds, picture, {}), light, share);
 }
 
 } // namespace gl

@@ -4,6 +4,7 @@
 #pragma once
 
 #include "Rendering/OpenGL2/DepthConvention.h"
+#include "Rendering/OpenGL2/DepthPrograms.h"
 #include "Rendering/OpenGL2/FrameStatistics.h"
 #include "Rendering/OpenGL2/GeometryBuffers.h"
 #include "Rendering/OpenGL2/ObjectPool.h"
@@ -11,6 +12,7 @@
 #include "Rendering/OpenGL2/Picture.h"
 #include "Rendering/OpenGL2/RayCaster.h"
 #include "Rendering/OpenGL2/ShadowMaps.h"
+#include "Rendering/OpenGL2/TextureBuffers.h"
 
 #include "Rendering/Core/PixelBounds.h"
 #include "Rendering/Core/Plan/Caches.h"
@@ -37,25 +39,34 @@ public:
     FrameStatistics& statistics, Caches& caches);
 
   std::string uploadGeometry(const Snapshot& snapshot, FrameStatistics& statistics);
+  // Before parts are rasterised: what those with holes look up.
+  std::string prepareDrawing(const Snapshot& snapshot, FrameStatistics& statistics);
   // The maps that the statistics' plan asks for.
   std::string drawShadowMaps(const Snapshot& snapshot, FrameStatistics& statistics);
   std::string readBackShadowMaps(FrameStatistics& statistics);
 
   // Shades the primary image from the picture's hits.
-  std::string shade(const Snapshot& snapshot, const PixelBounds& bounds, Picture& picture);
+  std::string shade(const Snapshot& snapshot, const PixelBounds& bounds, Picture& picture,
+    FrameStatistics& statistics);
   // The visible share of one light per pixel: see RayCaster.
   bool readShadow(const Snapshot& snapshot, const PixelBounds& bounds, const Picture& picture,
     int light, std::vector<float>& share);
 
-  const GeometryBuffers& geometry() const { return this->Geometry; }
+  DepthPrograms::Tables tables() const
+  {
+    return { this->Geometry, this->Tables, this->Images };
+  }
   const ShadowMaps& shadowMaps() const { return this->Shadows; }
 
 private:
-  RayCaster::Inputs inputs(
-    const Snapshot& snapshot, const PixelBounds& bounds, const Picture& picture) const;
+  // Textures and parts' tables, as drawing and shading look them up.
+  std::string updateParts(const Snapshot& snapshot, FrameStatistics& statistics);
+  RayCaster::Inputs inputs(const Snapshot& snapshot, const PixelBounds& bounds,
+    const Picture& picture, const SurfaceFeatures& features) const;
 
   const ObjectPool& Pool;
   GeometryBuffers Geometry;
+  TextureBuffers Images;
   PartTables Tables;
   ShadowMaps Shadows;
   RayCaster Caster;

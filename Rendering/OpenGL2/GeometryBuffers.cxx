@@ -88,6 +88,11 @@ std::vector<GeometryBuffers::Slot> GeometryBuffers::layOut(const Snapshot& snaps
       slot.lookup = lookup;
       lookup += static_cast<std::int32_t>(geometry.lookup.size());
     }
+    if (!geometry.textureCoordinates.empty())
+    {
+      slot.textureCoordinates = coordinates;
+      coordinates += triangles;
+    }
     slots.push_back(slot);
   }
   return slots;
@@ -172,6 +177,7 @@ void GeometryBuffers::allocate(const Snapshot& snapshot)
     normals += geometry.normals.empty() ? 0 : 3 * geometry.triangleCount();
     colors += geometry.colors.empty() ? 0 : 3 * geometry.triangleCount();
     coordinates += geometry.coordinates.empty() ? 0 : 3 * geometry.triangleCount();
+    coordinates += geometry.textureCoordinates.empty() ? 0 : 3 * geometry.triangleCount();
     lookups += geometry.lookup.size();
   }
   // Bytes without data: only the storage is made; every part is uploaded into it afterwards.
@@ -206,6 +212,7 @@ void GeometryBuffers::uploadPart(const Part& part, const Slot& slot)
     [](const glm::vec3& normal) { return glm::vec4(normal, 0.0f); });
   put(this->Colors, slot.colors, geometry.colors, asItIs);
   put(this->Coordinates, slot.coordinates, geometry.coordinates, asItIs);
+  put(this->Coordinates, slot.textureCoordinates, geometry.textureCoordinates, asItIs);
   if (!geometry.lookup.empty())
   {
     const std::size_t bytes = geometry.lookup.size() * sizeof(geometry.lookup[0]);
@@ -228,7 +235,7 @@ void GeometryBuffers::uploadLayout(const Snapshot& snapshot)
     layout.emplace_back(
       static_cast<int>(part.firstTriangle), slot.normals, slot.colors, slot.coordinates);
     layout.emplace_back(std::max(slot.lookup, 0), part.geometry->lookupWidth,
-      part.geometry->lookupHeight, 0);
+      part.geometry->lookupHeight, slot.textureCoordinates);
   }
   this->TrianglePart.upload(owner.data(), owner.size() * sizeof(owner[0]), GL_STATIC_DRAW);
   this->Layout.upload(layout.data(), layout.size() * sizeof(layout[0]), GL_STATIC_DRAW);

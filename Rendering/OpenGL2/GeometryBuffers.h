@@ -50,12 +50,14 @@ private:
     TriangleId firstTriangle = 0;
     std::size_t triangles = 0;
     std::int32_t normals = -1, colors = -1, coordinates = -1, lookup = -1;
+    std::int32_t textureCoordinates = -1; // in the table of coordinates too
 
     bool samePlace(const Slot& o) const
     {
       return this->firstTriangle == o.firstTriangle && this->triangles == o.triangles &&
         this->normals == o.normals && this->colors == o.colors &&
-        this->coordinates == o.coordinates && this->lookup == o.lookup;
+        this->coordinates == o.coordinates && this->lookup == o.lookup &&
+        this->textureCoordinates == o.textureCoordinates;
     }
   };
 

@@ -235,7 +235,7 @@ std::vector<bool> castersFor(const Snapshot& snapshot, const Light& light)
   for (std::size_t i = 0; i < snapshot.parts.size(); ++i)
   {
     const Part& part = snapshot.parts[i];
-    casters.push_back(part.castsShadow && part.geometry->triangleCount() > 0 &&
+    casters.push_back(part.castsShadowInMaps() && part.geometry->triangleCount() > 0 &&
       !shadowsNothing(snapshot, i, light));
   }
   return casters;

@@ -2,7 +2,6 @@
 #include "Rendering/OpenGL2/ObjectIntersectionBuffer.h"
 
 #include "Rendering/OpenGL2/OffscreenState.h"
-#include "Rendering/OpenGL2/Shader.h"
 
 #include "vtkOpenGLRenderWindow.h"
 #include "vtkOpenGLState.h"
@@ -60,7 +59,7 @@ bool ObjectIntersectionBuffer::resize(int width, int height, Visibility visibili
 
 //------------------------------------------------------------------------------
 bool ObjectIntersectionBuffer::draw(vtkOpenGLRenderWindow* window, const Snapshot& snapshot,
-  const GeometryBuffers& geometry, const std::vector<bool>& parts, const PixelBounds& bounds)
+  const DepthPrograms::Tables& tables, const std::vector<bool>& parts, const PixelBounds& bounds)
 {
   this->TrianglesDrawn = 0;
   OffscreenState target(window, this->Framebuffer, this->Hits.width(), this->Hits.height());
@@ -71,14 +70,8 @@ bool ObjectIntersectionBuffer::draw(vtkOpenGLRenderWindow* window, const Snapsho
   {
     return false;
   }
-  vtkShaderProgram* program =
-    readyProgram(window, ObjectIntersectionBuffer_vs, ObjectIntersectionBuffer_fs);
-  if (!program)
-  {
-    return false;
-  }
-  program->SetUniformi("directRendering", this->Mode == Visibility::DirectRendering ? 1 : 0);
-
+  DepthPrograms programs(
+    window, ObjectIntersectionBuffer_vs, ObjectIntersectionBuffer_fs, tables);
   const GLuint noHit[4] = { 0, 0, 0, 0 };
   const GLfloat far = this->Convention.clearDepth();
   target.beginDepthPass(this->Convention);
@@ -87,24 +80,32 @@ bool ObjectIntersectionBuffer::draw(vtkOpenGLRenderWindow* window, const Snapsho
   glClearBufferfv(GL_DEPTH, 0, &far);
 
   ScopedDepthConvention depth(this->Convention);
-  geometry.bindForDrawing(static_cast<GLuint>(program->GetHandle()));
   const glm::dmat4 toClip = this->Convention.drawMatrix(snapshot.camera.viewToClip) *
     snapshot.camera.worldToView;
+  vtkShaderProgram* current = nullptr;
   for (std::size_t i = 0; i < parts.size(); ++i)
   {
     if (!parts[i])
     {
       continue;
     }
+    vtkShaderProgram* program = programs.use(snapshot, i);
+    if (!program)
+    {
+      return false;
+    }
     const Part& part = snapshot.parts[i];
+    if (program != current)
+    {
+      program->SetUniformi("directRendering", this->Mode == Visibility::DirectRendering ? 1 : 0);
+      current = program;
+    }
     setCulling(window->GetState(), part.material);
     glm::mat4 matrix(toClip * part.positionsToWorld());
     program->SetUniformMatrix4x4("positionToClip", &matrix[0][0]);
-    geometry.draw(part);
+    tables.geometry.draw(part);
     this->TrianglesDrawn += part.geometry->triangleCount();
   }
-  glBindVertexArray(0);
-  releaseProgram(window);
   return true;
 }
 

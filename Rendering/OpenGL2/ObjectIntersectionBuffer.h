@@ -5,7 +5,7 @@
 #pragma once
 
 #include "Rendering/OpenGL2/DepthConvention.h"
-#include "Rendering/OpenGL2/GeometryBuffers.h"
+#include "Rendering/OpenGL2/DepthPrograms.h"
 #include "Rendering/OpenGL2/ObjectPool.h"
 
 #include "Rendering/Core/PixelBounds.h"
@@ -34,10 +34,11 @@ public:
   // Makes the target fit; true when what it held is lost.
   bool resize(int width, int height, Visibility visibility);
 
-  // Rasterises those parts within those pixels; what the others hold is left undefined. Returns false
+  // Rasterises those parts within those pixels, without the holes of their textures; what the others hold is left undefined. Returns false
   // when a shader or the framebuffer is not usable; an error message has been given then.
   bool draw(vtkOpenGLRenderWindow* window, const Snapshot& snapshot,
-    const GeometryBuffers& geometry, const std::vector<bool>& parts, const PixelBounds& bounds);
+    const DepthPrograms::Tables& tables, const std::vector<bool>& parts,
+    const PixelBounds& bounds);
 
   // Takes the ids and depths that primary rays have found within the bounds instead.
   void upload(const PrimaryHits& primary, const PixelBounds& bounds);

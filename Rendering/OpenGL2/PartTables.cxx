@@ -19,7 +19,19 @@ void appendTerms(std::vector<glm::vec4>& table, const PhongTerms& terms)
   table.emplace_back(terms.specularColor * terms.specular, terms.specularPower);
 }
 
-void appendPart(std::vector<glm::vec4>& table, const Part& part, const glm::dmat4& worldToView)
+void appendTextureTransform(std::vector<glm::vec4>& table, const Part& part, std::size_t place)
+{
+  const Textures& textures = part.material.textures;
+  // Without coordinates VTK shows no texture.
+  const std::size_t count = part.geometry->textureCoordinates.empty() ? 0 : textures.layers.size();
+  table.emplace_back(textures.transformX, static_cast<float>(place));
+  table.emplace_back(textures.transformY, static_cast<float>(count));
+  table.emplace_back(textures.transformW, 0.0f);
+}
+
+// `texturePlace`: of the descriptions of the part's textures.
+void appendPart(std::vector<glm::vec4>& table, const Part& part, const glm::dmat4& worldToView,
+  std::size_t texturePlace)
 {
   const glm::dmat4 toView = worldToView * part.positionsToWorld();
   const glm::dmat3 normals = glm::inverseTranspose(glm::dmat3(toView));
@@ -36,8 +48,9 @@ void appendPart(std::vector<glm::vec4>& table, const Part& part, const glm::dmat
   }
   appendTerms(table, part.material.front);
   appendTerms(table, part.material.back);
-  table.emplace_back(
-    part.material.lit ? 1.0f : 0.0f, part.geometry->flat ? 0.0f : 1.0f, 0.0f, 0.0f);
+  table.emplace_back(part.material.lit ? 1.0f : 0.0f, part.geometry->flat ? 0.0f : 1.0f,
+    part.material.textures.onBack ? 1.0f : 0.0f, part.material.textures.transformed ? 1.0f : 0.0f);
+  appendTextureTransform(table, part, texturePlace);
 }
 
 void appendLight(std::vector<glm::vec4>& table, const Light& light, bool singleHeadlight,
@@ -62,16 +75,23 @@ PartTables::PartTables(ObjectPool& pool)
 }
 
 //------------------------------------------------------------------------------
-void PartTables::update(const Snapshot& snapshot, const std::vector<ShadowSlot>& shadows)
+void PartTables::updateParts(const Snapshot& snapshot, const TextureBuffers& textures)
 {
-  std::vector<glm::vec4> parts;
-  parts.reserve(snapshot.parts.size() * kPartTexels);
+  std::vector<glm::vec4> table, descriptions;
+  table.reserve(snapshot.parts.size() * kPartTexels);
   for (const Part& part : snapshot.parts)
   {
-    appendPart(parts, part, snapshot.camera.worldToView);
+    appendPart(table, part, snapshot.camera.worldToView,
+      snapshot.parts.size() * kPartTexels + descriptions.size());
+    textures.describe(part, descriptions);
   }
-  this->Parts.upload(parts.data(), parts.size() * sizeof(parts[0]), GL_STREAM_DRAW);
+  table.insert(table.end(), descriptions.begin(), descriptions.end());
+  this->Parts.upload(table.data(), table.size() * sizeof(table[0]), GL_STREAM_DRAW);
+}
 
+//------------------------------------------------------------------------------
+void PartTables::updateLights(const Snapshot& snapshot, const std::vector<ShadowSlot>& shadows)
+{
   std::vector<glm::vec4> lights;
   lights.reserve(snapshot.lights.size() * kLightTexels);
   for (std::size_t i = 0; i < snapshot.lights.size(); ++i)

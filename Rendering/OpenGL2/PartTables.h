@@ -3,6 +3,7 @@
 #pragma once
 
 #include "Rendering/OpenGL2/ObjectPool.h"
+#include "Rendering/OpenGL2/TextureBuffers.h"
 
 #include "Rendering/Core/Shading/ShadowLookup.h"
 #include "Rendering/Core/Snapshot.h"
@@ -17,11 +18,14 @@ namespace gl
 // Layout of the tables; the same names are handed to the shaders as #defines.
 //   part:   0-3 positions to view coordinates, 4-6 normals to view coordinates,
 //           7-9 front: (ambient colour, ambient) (diffuse colour, diffuse) (specular, power),
-//           10-12 back: the same, 13 (lit, folds, 0, 0)
-//   layout: (first triangle, normals, colours, coordinates) (lookup start, width, height, 0)
+//           10-12 back: the same, 13 (lit, folds, textures on the back, textures transformed),
+//           14-16 rows x, y, w of the texture transform with (place of the textures' descriptions in
+//           this table, their number, 0); the descriptions follow all parts: see TextureBuffers.h
+//   layout: (first triangle, normals, colours, coordinates)
+//           (lookup start, width, height, texture coordinates)
 //   light:  (position, kind) (direction, cosine of the cone) (colour, exponent)
 //           (attenuation, 0) (first shadow face, number of faces, 0, 0)
-inline constexpr int kPartTexels = 14;
+inline constexpr int kPartTexels = 17;
 inline constexpr int kLayoutTexels = 2;
 inline constexpr int kLightTexels = 5;
 
@@ -30,7 +34,9 @@ class PartTables
 public:
   explicit PartTables(ObjectPool& pool);
 
-  void update(const Snapshot& snapshot, const std::vector<ShadowSlot>& shadows);
+  // The texture buffers must be up to date.
+  void updateParts(const Snapshot& snapshot, const TextureBuffers& textures);
+  void updateLights(const Snapshot& snapshot, const std::vector<ShadowSlot>& shadows);
 
   // part table, light table
   static constexpr int kUnits = 2;

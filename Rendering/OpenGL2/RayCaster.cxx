@@ -21,10 +21,11 @@ namespace
 
 // The samplers in the order in which the tables are bound.
 const char* const kSamplers[] = { "hitBuffer", "trianglePart", "positions", "normals", "colors",
-  "coordinates", "lookups", "partLayout", "partTable", "lightTable", "shadowFaces", "shadowAtlas" };
+  "coordinates", "lookups", "partLayout", "partTable", "lightTable", "shadowFaces", "shadowAtlas",
+  "texels", "floatTexels" };
 constexpr int kSamplerCount = static_cast<int>(sizeof(kSamplers) / sizeof(kSamplers[0]));
 static_assert(kSamplerCount ==
-    1 + GeometryBuffers::kUnits + PartTables::kUnits + ShadowMaps::kUnits,
+    1 + GeometryBuffers::kUnits + PartTables::kUnits + ShadowMaps::kUnits + TextureBuffers::kUnits,
   "every table has its sampler");
 
 void setVector(vtkShaderProgram* program, const char* name, const glm::dvec3& value)
@@ -91,7 +92,7 @@ bool RayCaster::shade(vtkOpenGLRenderWindow* window, const Inputs& inputs, const
   {
     return false;
   }
-  vtkShaderProgram* program = readyProgram(window, ScreenTriangle_vs, rayCasterSource());
+  vtkShaderProgram* program = readyProgram(window, ScreenTriangle_vs, rayCasterSource(inputs.features));
   if (!program)
   {
     return false;
@@ -110,6 +111,8 @@ bool RayCaster::shade(vtkOpenGLRenderWindow* window, const Inputs& inputs, const
   inputs.tables.bindTables(unit);
   unit += PartTables::kUnits;
   inputs.shadows.bindTables(unit);
+  unit += ShadowMaps::kUnits;
+  inputs.textures.bindTables(unit);
   for (int i = 0; i < kSamplerCount; ++i)
   {
     if (program->IsUniformUsed(kSamplers[i]))

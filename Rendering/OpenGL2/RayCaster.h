@@ -7,7 +7,9 @@
 #include "Rendering/OpenGL2/ObjectIntersectionBuffer.h"
 #include "Rendering/OpenGL2/ObjectPool.h"
 #include "Rendering/OpenGL2/PartTables.h"
+#include "Rendering/OpenGL2/Shader.h"
 #include "Rendering/OpenGL2/ShadowMaps.h"
+#include "Rendering/OpenGL2/TextureBuffers.h"
 
 #include "Rendering/Core/Snapshot.h"
 
@@ -31,9 +33,11 @@ public:
     const Snapshot& snapshot;
     const GeometryBuffers& geometry;
     const PartTables& tables;
+    const TextureBuffers& textures;
     const ShadowMaps& shadows;
     const ObjectIntersectionBuffer& hits;
     const PixelBounds& bounds; // what is shaded
+    SurfaceFeatures features;  // of the parts in view
   };
 
   // Shades the primary image into `target`, of the hits' size. False after an error message.

@@ -7,11 +7,14 @@
 #include "vtkOpenGLShaderCache.h"
 #include "vtkShaderProgram.h"
 
+#include "Holes.h"
 #include "RayCaster_fs.h"
 #include "Shading.h"
 #include "ShadowLookup.h"
 #include "Surface.h"
 #include "SurfaceColors.h"
+#include "TextureLookup.h"
+#include "TextureFetch.h"
 
 #include <locale>
 #include <sstream>
@@ -23,16 +26,18 @@ namespace gl
 namespace
 {
 
-std::string definitions()
+std::string definitions(const SurfaceFeatures& features)
 {
   std::ostringstream text;
   text.imbue(std::locale::classic()); // a host may have set one with decimal commas
   text.precision(9);
   text << std::showpoint;
   text << "#define real float\n#define HRT_FUNCTION\n";
+  text << (features.textures ? "#define HRT_TEXTURES\n" : "");
   text << "#define PART_TEXELS " << kPartTexels << "\n";
   text << "#define LAYOUT_TEXELS " << kLayoutTexels << "\n";
   text << "#define LIGHT_TEXELS " << kLightTexels << "\n";
+  text << "#define TEXTURE_TEXELS " << kTextureTexels << "\n";
   text << "#define FACE_TEXELS " << kFaceTexels << "\n";
   text << "#define FACE_SEAM " << kFaceSeam << "\n";
   text << "#define ROUNDING " << kShadowRounding << "\n";
@@ -55,16 +60,30 @@ vtkShaderProgram* readyProgram(
 }
 
 //------------------------------------------------------------------------------
-const std::string& rayCasterSource()
+std::string rayCasterSource(const SurfaceFeatures& features)
 {
-  static const std::string source = [] {
-    std::string text = RayCaster_fs;
+  std::string text = RayCaster_fs;
+  vtkShaderProgram::Substitute(
+    text, "//HRT::Shading", definitions(features) + Shading + Surface + ShadowLookup);
+  vtkShaderProgram::Substitute(text, "//HRT::SurfaceColors", SurfaceColors);
+  vtkShaderProgram::Substitute(text, "//HRT::Textures",
+    features.textures ? std::string(TextureFetch) + TextureLookup : std::string());
+  return text;
+}
+
+//------------------------------------------------------------------------------
+std::string depthSource(const char* text, bool holes, bool fragment)
+{
+  std::string result = text;
+  std::string code = holes ? "#define HRT_HOLES\n" : "";
+  if (holes && fragment)
+  {
+    code += definitions({}) + Shading + Surface + Holes;
     vtkShaderProgram::Substitute(
-      text, "//HRT::Shading", definitions() + Shading + Surface + ShadowLookup);
-    vtkShaderProgram::Substitute(text, "//HRT::SurfaceColors", SurfaceColors);
-    return text;
-  }();
-  return source;
+      code, "//HRT::Textures", std::string(TextureFetch) + TextureLookup);
+  }
+  vtkShaderProgram::Substitute(result, "//HRT::Holes", code);
+  return result;
 }
 
 //------------------------------------------------------------------------------

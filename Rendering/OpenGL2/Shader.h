@@ -3,6 +3,8 @@
 // table layouts into a shader's text and readies the program.
 #pragma once
 
+#include "Rendering/Core/Plan/Facts.h"
+
 #include <string>
 
 class vtkOpenGLRenderWindow;
@@ -17,8 +19,13 @@ namespace gl
 vtkShaderProgram* readyProgram(
   vtkOpenGLRenderWindow* window, const char* vertexShader, const std::string& fragmentShader);
 
-// The ray caster's fragment shader with the shared shading source and the layouts filled in.
-const std::string& rayCasterSource();
+// The ray caster's fragment shader with the shared shading source and the layouts filled in. What no
+// surface in view has is not in it: a scene does not pay for the features of others.
+std::string rayCasterSource(const SurfaceFeatures& features);
+
+// A shader that rasterises parts: as it is, or made to leave out the holes of their textures. In a vertex
+// shader `fragment` is false.
+std::string depthSource(const char* text, bool holes, bool fragment);
 
 // Forgets the current program, in VTK's cache too.
 void releaseProgram(vtkOpenGLRenderWindow* window);

@@ -2,7 +2,6 @@
 #include "Rendering/OpenGL2/ShadowMaps.h"
 
 #include "Rendering/OpenGL2/OffscreenState.h"
-#include "Rendering/OpenGL2/Shader.h"
 
 #include "vtkOpenGLRenderWindow.h"
 #include "vtkShaderProgram.h"
@@ -113,7 +112,7 @@ std::vector<bool> ShadowMaps::prepare(
 
 //------------------------------------------------------------------------------
 bool ShadowMaps::draw(vtkOpenGLRenderWindow* window, const Snapshot& snapshot,
-  const GeometryBuffers& geometry, const std::vector<bool>& draw)
+  const DepthPrograms::Tables& tables, const std::vector<bool>& draw)
 {
   this->TrianglesDrawn = 0;
   OffscreenState target(
@@ -125,14 +124,9 @@ bool ShadowMaps::draw(vtkOpenGLRenderWindow* window, const Snapshot& snapshot,
   {
     return false;
   }
-  vtkShaderProgram* program = readyProgram(window, ShadowMap_vs, ShadowMap_fs);
-  if (!program)
-  {
-    return false;
-  }
+  DepthPrograms programs(window, ShadowMap_vs, ShadowMap_fs, tables);
   target.beginDepthPass(this->Convention);
   ScopedDepthConvention depth(this->Convention);
-  geometry.bindForDrawing(static_cast<GLuint>(program->GetHandle()));
   const GLfloat clear = this->Convention.clearDepth();
   for (std::size_t i = 0; i < this->Maps.size(); ++i)
   {
@@ -156,18 +150,21 @@ bool ShadowMaps::draw(vtkOpenGLRenderWindow* window, const Snapshot& snapshot,
       {
         if (casters[p])
         {
+          vtkShaderProgram* program = programs.use(snapshot, p);
+          if (!program)
+          {
+            return false;
+          }
           const Part& part = snapshot.parts[p];
           glm::mat4 matrix(toClip * part.positionsToWorld());
           program->SetUniformMatrix4x4("positionToClip", &matrix[0][0]);
-          geometry.draw(part);
+          tables.geometry.draw(part);
           this->TrianglesDrawn += part.geometry->triangleCount();
         }
       }
     }
     this->Slots[i].faceCount = static_cast<int>(map.faces.size());
   }
-  glBindVertexArray(0);
-  releaseProgram(window);
   return true;
 }
 

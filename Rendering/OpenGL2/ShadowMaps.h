@@ -5,7 +5,7 @@
 #pragma once
 
 #include "Rendering/OpenGL2/DepthConvention.h"
-#include "Rendering/OpenGL2/GeometryBuffers.h"
+#include "Rendering/OpenGL2/DepthPrograms.h"
 #include "Rendering/OpenGL2/LightFrustum.h"
 #include "Rendering/OpenGL2/ObjectPool.h"
 #include "Rendering/OpenGL2/PartTables.h"
@@ -42,7 +42,7 @@ public:
 
   // Draws the maps of the lights in `draw`. False after an error message.
   bool draw(vtkOpenGLRenderWindow* window, const Snapshot& snapshot,
-    const GeometryBuffers& geometry, const std::vector<bool>& draw);
+    const DepthPrograms::Tables& tables, const std::vector<bool>& draw);
 
   // Where each light's faces lie in the table; refreshed for the current camera by updateTable.
   const std::vector<ShadowSlot>& slots() const { return this->Slots; }

@@ -3,6 +3,8 @@
 
 #include <cstdio>
 #include <locale>
+#include <map>
+#include <numeric>
 #include <sstream>
 
 namespace hrt
@@ -87,6 +89,26 @@ void rays(std::ostream& out, const RayCount& count)
   object.number("traced", count.traced);
 }
 
+// What the scene's surfaces have beside plain colours.
+void surfaces(std::ostream& out, const Snapshot& snapshot)
+{
+  std::size_t textured = 0;
+  std::map<std::uint64_t, std::size_t> texels; // by texture: one that several parts show counts once
+  for (const Part& part : snapshot.parts)
+  {
+    textured += part.material.textures.layers.empty() ? 0 : 1;
+    for (const TextureLayer& layer : part.material.textures.layers)
+    {
+      texels[layer.texture->version] = layer.texture->texelCount();
+    }
+  }
+  Object object(out);
+  object.number("textured", textured);
+  object.number("texels",
+    std::accumulate(texels.begin(), texels.end(), std::size_t(0),
+      [](std::size_t sum, const auto& texture) { return sum + texture.second; }));
+}
+
 void props(std::ostream& out, const PropReasons& list)
 {
   Object object(out);
@@ -164,6 +186,7 @@ std::string statisticsReport(const FrameStatistics& statistics, const Snapshot& 
       refused.number("singular_matrices", snapshot.refusals.singularMatrices);
       refused.number("out_of_range_parts", snapshot.refusals.outOfRangeParts);
     }
+    surfaces(report.key("surfaces"), snapshot);
     props(report.key("left_to_vtk"), leftToVTK);
     props(report.key("hosted"), hosted);
     report.number("shadow_map_resolution", statistics.shadowMapResolution);

@@ -3,8 +3,6 @@
 #include "Rendering/Scene/ActorClassification.h"
 
 #include "vtkActor.h"
-#include "vtkMapper.h"
-#include "vtkPlaneCollection.h"
 #include "vtkProp.h"
 #include "vtkProperty.h"
 #include "vtkShaderProperty.h"
@@ -28,12 +26,6 @@ bool isAnyOf(vtkObject* object, const char* const (&names)[N])
 {
   return std::any_of(
     std::begin(names), std::end(names), [object](const char* name) { return object->IsA(name); });
-}
-
-bool hasClippingPlanes(vtkMapper* mapper)
-{
-  vtkPlaneCollection* planes = mapper->GetClippingPlanes();
-  return planes && planes->GetNumberOfItems() > 0;
 }
 
 bool hasOwnShaders(vtkActor* actor)
@@ -77,8 +69,8 @@ const char* describe(LeftToVTK reason)
       return "the mapper streams its input in pieces";
     case LeftToVTK::GlyphLines:
       return "glyphs with vertex or line cells beside their surface";
-    case LeftToVTK::ClippingPlanes:
-      return "clipped by the mapper's planes";
+    case LeftToVTK::ClippedGlyphs:
+      return "glyphs clipped by the mapper's planes";
     case LeftToVTK::ProjectiveMatrix:
       return "the matrix is projective";
     case LeftToVTK::SingularMatrix:
@@ -87,8 +79,10 @@ const char* describe(LeftToVTK reason)
       return "its bounds in the world are too large";
     case LeftToVTK::TooManyTriangles:
       return "the scene has too many triangles";
-    case LeftToVTK::Texture:
-      return "textured";
+    case LeftToVTK::MipMappedTexture:
+      return "its texture has mip maps";
+    case LeftToVTK::OtherTexture:
+      return "its texture is not an image that can be read";
     case LeftToVTK::EdgeVisibility:
       return "edges are shown";
     case LeftToVTK::PhysicallyBased:
@@ -124,7 +118,8 @@ bool seenByRays(LeftToVTK reason)
   {
     case LeftToVTK::No:
     case LeftToVTK::Translucent:
-    case LeftToVTK::Texture:
+    case LeftToVTK::MipMappedTexture:
+    case LeftToVTK::OtherTexture:
     case LeftToVTK::EdgeVisibility:
     case LeftToVTK::PhysicallyBased:
     case LeftToVTK::ShaderReplacements:
@@ -163,17 +158,9 @@ LeftToVTK classifyActor(vtkActor* actor)
 }
 
 //------------------------------------------------------------------------------
-LeftToVTK classifySurface(vtkActor* actor, vtkMapper* mapper, bool isGlass)
+LeftToVTK classifySurface(vtkActor* actor, bool isGlass)
 {
   vtkProperty* property = actor->GetProperty();
-  if (hasClippingPlanes(mapper))
-  {
-    return LeftToVTK::ClippingPlanes;
-  }
-  if (actor->GetTexture() || property->GetNumberOfTextures() > 0)
-  {
-    return LeftToVTK::Texture;
-  }
   if (property->GetEdgeVisibility())
   {
     return LeftToVTK::EdgeVisibility;

@@ -6,7 +6,6 @@
 #pragma once
 
 class vtkActor;
-class vtkMapper;
 class vtkProp;
 
 namespace hrt
@@ -33,14 +32,15 @@ enum class LeftToVTK
   OtherData,
   SubPieces,
   GlyphLines,
-  ClippingPlanes,
+  ClippedGlyphs,
   ProjectiveMatrix,
   SingularMatrix,
   OutOfRange, // its bounds in the world
   TooManyTriangles,
 
   // Its triangles are known, and seen in mirrors, but its picture is more than shaded triangles.
-  Texture,
+  MipMappedTexture,
+  OtherTexture,
   EdgeVisibility,
   PhysicallyBased,
   ShaderReplacements
@@ -62,7 +62,7 @@ LeftToVTK classifyProp(vtkProp* prop);
 LeftToVTK classifyActor(vtkActor* actor);
 
 // The rest of the rules, for an actor that passed and whose pipeline is up to date.
-LeftToVTK classifySurface(vtkActor* actor, vtkMapper* mapper, bool isGlass);
+LeftToVTK classifySurface(vtkActor* actor, bool isGlass);
 
 // Some light passes, by opacity of either side, of scalars, or by force.
 bool isTranslucent(vtkActor* actor);

@@ -10,8 +10,17 @@
 #include "vtkPolyData.h"
 #include "vtkUnsignedCharArray.h"
 
+#include "vtkVersion.h"
+
 #include <algorithm>
 #include <cmath>
+
+// Before VTK 9.3 the coordinates of scalars in their lookup table take the place of those of textures.
+#if VTK_VERSION_NUMBER < VTK_VERSION_CHECK(9, 3, 0)
+#define HRT_ONE_SET_OF_COORDINATES 1
+#else
+#define HRT_ONE_SET_OF_COORDINATES 0
+#endif
 
 namespace hrt
 {
@@ -171,6 +180,35 @@ bool writeColors(
   }
   geometry.colorSource = ColorSource::Property;
   return true;
+}
+
+//------------------------------------------------------------------------------
+void writeTextureCoordinates(
+  vtkPolyData* input, const VertexPoints& pointOf, Geometry& geometry)
+{
+  if (HRT_ONE_SET_OF_COORDINATES && geometry.colorSource == ColorSource::Lookup)
+  {
+    geometry.textureCoordinates = geometry.coordinates;
+    return;
+  }
+  vtkDataArray* array = input->GetPointData()->GetTCoords();
+  const int components = array ? array->GetNumberOfComponents() : 0;
+  if ((components != 1 && components != 2) ||
+    array->GetNumberOfTuples() < input->GetNumberOfPoints())
+  {
+    return;
+  }
+  const auto read = [array](PointNumber point, int component)
+  {
+    const auto value = static_cast<float>(array->GetComponent(point, component));
+    return std::isfinite(value) ? value : 0.0f;
+  };
+  std::vector<glm::vec2>& values = geometry.textureCoordinates.values;
+  values.reserve(pointOf.size());
+  for (const PointNumber point : pointOf)
+  {
+    values.emplace_back(read(point, 0), components == 2 ? read(point, 1) : 0.0f);
+  }
 }
 
 } // namespace scene

@@ -20,5 +20,10 @@ namespace scene
 bool writeColors(
   vtkMapper* mapper, vtkPolyData* input, const VertexPoints& pointOf, Geometry& geometry);
 
+// Fills the geometry's texture coordinates as VTK's mapper chooses them, of one or two components;
+// leaves them empty where VTK shows no texture. After writeColors.
+void writeTextureCoordinates(
+  vtkPolyData* input, const VertexPoints& pointOf, Geometry& geometry);
+
 } // namespace scene
 } // namespace hrt

@@ -18,20 +18,13 @@ namespace
 {
 
 //------------------------------------------------------------------------------
-std::uint64_t nextVersion()
-{
-  static std::atomic<std::uint64_t> last{ 0 };
-  return ++last;
-}
-
-//------------------------------------------------------------------------------
 // All but the version; the bounds follow from the positions.
 bool sameContent(const Geometry& a, const Geometry& b)
 {
   return a.origin == b.origin && a.colorSource == b.colorSource && a.lookupWidth == b.lookupWidth &&
     a.lookupHeight == b.lookupHeight && a.triangles == b.triangles && a.cellIds == b.cellIds &&
     a.positions == b.positions && a.normals == b.normals && a.colors == b.colors &&
-    a.coordinates == b.coordinates && a.lookup == b.lookup;
+    a.coordinates == b.coordinates && a.textureCoordinates == b.textureCoordinates && a.lookup == b.lookup;
 }
 
 //------------------------------------------------------------------------------
@@ -59,11 +52,18 @@ void nameOriginalCells(vtkDataArray* originals, Geometry& geometry)
 } // anonymous namespace
 
 //------------------------------------------------------------------------------
+std::uint64_t nextGeometryVersion()
+{
+  static std::atomic<std::uint64_t> last{ 0 };
+  return ++last;
+}
+
+//------------------------------------------------------------------------------
 GeometryCache::Signature GeometryCache::signatureOf(const GeometrySource& source)
 {
   // A mapper's modification time includes that of its look-up table.
   return Signature(source.input, source.input->GetMTime(), source.mapper,
-    source.mapper->GetMTime(), source.flat, source.plain);
+    source.mapper->GetMTime(), source.flat, source.plain, source.textured);
 }
 
 //------------------------------------------------------------------------------
@@ -76,6 +76,10 @@ ExtractionPointer GeometryCache::extract(const GeometrySource& source, const Ext
     triangulate(source.input, readPoints(source.input), report), *geometry, report);
   extraction->colorsComplete =
     source.plain || writeColors(source.mapper, source.input, pointOf, *geometry);
+  if (source.textured)
+  {
+    writeTextureCoordinates(source.input, pointOf, *geometry);
+  }
   nameOriginalCells(source.originalCells, *geometry);
 
   if (before && sameContent(*before->geometry, *geometry))
@@ -84,7 +88,7 @@ ExtractionPointer GeometryCache::extract(const GeometrySource& source, const Ext
   }
   else
   {
-    geometry->version = nextVersion();
+    geometry->version = nextGeometryVersion();
     extraction->geometry = geometry;
   }
   return extraction;

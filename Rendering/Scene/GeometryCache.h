@@ -44,7 +44,11 @@ struct GeometrySource
   vtkDataArray* originalCells = nullptr; // see SurfacePiece; comes and goes with the input
   bool flat = false;  // vtkProperty's interpolation, which selects the normals
   bool plain = false; // scalars do not count
+  bool textured = false; // texture coordinates are wanted
 };
+
+// For a geometry that is made outside of the cache: unique among all.
+std::uint64_t nextGeometryVersion();
 
 class GeometryCache
 {
@@ -59,7 +63,7 @@ public:
   void endFrame();
 
 private:
-  using Signature = std::tuple<const void*, vtkMTimeType, const void*, vtkMTimeType, bool, bool>;
+  using Signature = std::tuple<const void*, vtkMTimeType, const void*, vtkMTimeType, bool, bool, bool>;
   struct Record
   {
     vtkWeakPointer<vtkActor> actor; // another one may come to live at its address

@@ -9,7 +9,10 @@
 #include "Rendering/Scene/PlacedParts.h"
 
 #include "vtkActor.h"
+#include "vtkDataArray.h"
 #include "vtkMapper.h"
+#include "vtkPointData.h"
+#include "vtkPolyData.h"
 #include "vtkProperty.h"
 #include "vtkRenderer.h"
 
@@ -61,6 +64,45 @@ void placeOrigin(const SceneBox& box, Snapshot& snapshot)
     snapshot.boundsMax = box.upper;
     snapshot.origin = 0.5 * box.lower + 0.5 * box.upper;
   }
+}
+
+//------------------------------------------------------------------------------
+LeftToVTK leftByTextures(TextureReading::State state)
+{
+  switch (state)
+  {
+    case TextureReading::State::MipMapped:
+      return LeftToVTK::MipMappedTexture;
+    case TextureReading::State::Unreadable:
+      return LeftToVTK::OtherTexture;
+    default:
+      return LeftToVTK::No;
+  }
+}
+
+//------------------------------------------------------------------------------
+// Coordinates of one component are those of the lowest row, whatever the transform.
+Textures texturesOf(const Textures& textures, vtkPolyData* data)
+{
+  Textures result = textures;
+  vtkDataArray* coordinates = data->GetPointData()->GetTCoords();
+  if (coordinates && coordinates->GetNumberOfComponents() == 1)
+  {
+    result.transformY = glm::vec3(0.0f);
+  }
+  return result;
+}
+
+//------------------------------------------------------------------------------
+// What of the light passes a part whose material is known.
+void letLightThrough(Part& part, const RayKeys& keys, bool translucent)
+{
+  const Texture::Alpha alpha = part.material.textures.alpha;
+  const bool glass = part.material.isGlass();
+  const bool solid = !translucent && alpha == Texture::Alpha::Opaque;
+  part.perforated = !glass && !translucent && alpha == Texture::Alpha::Holes;
+  part.castsShadow = keys.castsShadow && !glass && solid;
+  part.tintsShadow = keys.castsShadow && !glass && !solid;
 }
 
 } // namespace
@@ -221,8 +263,8 @@ LeftToVTK SceneReader::addPart(const ActorPath& path, const Part& part, Draft& d
 }
 
 //------------------------------------------------------------------------------
-ExtractionPointer SceneReader::extract(
-  const ActorPath& path, const SurfacePiece& piece, std::uint64_t key, Refusals& refusals)
+ExtractionPointer SceneReader::extract(const ActorPath& path, const SurfacePiece& piece,
+  std::uint64_t key, bool textured, Refusals& refusals)
 {
   GeometrySource source;
   source.actor = path.actor;
@@ -231,6 +273,7 @@ ExtractionPointer SceneReader::extract(
   source.originalCells = piece.originalCells;
   source.flat = path.actor->GetProperty()->GetInterpolation() == VTK_FLAT;
   source.plain = piece.overrides.color;
+  source.textured = textured;
   bool fresh = false;
   ExtractionPointer extraction = this->Geometries.get(key, source, fresh);
   add(extraction->report, refusals);
@@ -266,7 +309,7 @@ LeftToVTK SceneReader::addPieces(const ActorPath& path, const MapperReading& rea
 {
   Snapshot& snapshot = *draft.frame.snapshot;
   const bool isGlass = keys.indexOfRefraction > 0.0;
-  LeftToVTK left = classifySurface(path.actor, path.actor->GetMapper(), isGlass);
+  LeftToVTK left = classifySurface(path.actor, isGlass);
   if (!seenByRays(left))
   {
     this->keep(path);
@@ -280,13 +323,24 @@ LeftToVTK SceneReader::addPieces(const ActorPath& path, const MapperReading& rea
     this->keep(path);
     return byMatrix;
   }
-  part.visibleToCamera = left == LeftToVTK::No;
+  const TextureReading images = this->Images.read(path.actor);
+  if (left == LeftToVTK::No)
+  {
+    left = leftByTextures(images.state);
+  }
   const bool translucent = isTranslucent(path.actor);
-  part.castsShadow = keys.castsShadow && !isGlass && !translucent;
-  part.tintsShadow = keys.castsShadow && !isGlass && translucent;
+
+  const std::vector<ClippingPlane> planes =
+    clippingPlanesOf(path.actor->GetMapper(), part.localToWorld);
+  const bool glyphs = !reading.pieces.empty() && reading.pieces.front().copies;
+  if (glyphs && !planes.empty())
+  {
+    this->keep(path);
+    return LeftToVTK::ClippedGlyphs; // no two would be cut alike
+  }
 
   memory.pieces.clear();
-  std::size_t surfaces = 0, otherCells = 0;
+  std::size_t surfaces = 0, otherCells = 0, emptied = 0; // by planes
   for (const SurfacePiece& piece : reading.pieces)
   {
     part.key = keyOfPiece(path.key, piece.key);
@@ -300,11 +354,13 @@ LeftToVTK SceneReader::addPieces(const ActorPath& path, const MapperReading& rea
         draft.frame.hosted.push_back({ shown, path.props.front() });
       }
     }
-    const ExtractionPointer extraction =
-      this->extract(path, piece, part.key, snapshot.refusals);
-    part.geometry = extraction->geometry;
+    const ExtractionPointer extraction = this->extract(
+      path, piece, part.key, !images.textures.layers.empty(), snapshot.refusals);
+    part.geometry = planes.empty() ? extraction->geometry
+                                   : memory.clipped.get(part.key, extraction->geometry, planes);
     if (part.geometry->triangleCount() == 0)
     {
+      emptied += extraction->geometry->triangleCount() > 0 ? 1 : 0;
       continue;
     }
     ++surfaces;
@@ -313,13 +369,23 @@ LeftToVTK SceneReader::addPieces(const ActorPath& path, const MapperReading& rea
     part.source.block = piece.block;
     part.material =
       extractMaterial(path.actor, keys, part.geometry->colorSource, piece.overrides);
+    if (!part.geometry->textureCoordinates.empty())
+    {
+      part.material.textures = texturesOf(images.textures, piece.data);
+    }
+    letLightThrough(part, keys, translucent);
+    if (left == LeftToVTK::No && !isGlass && part.material.textures.alpha == Texture::Alpha::Mixed)
+    {
+      left = LeftToVTK::Translucent;
+    }
+    part.visibleToCamera = left == LeftToVTK::No;
     const LeftToVTK byNumber = this->addPart(path, part, draft);
     left = left != LeftToVTK::No ? left : byNumber;
   }
   if (surfaces == 0)
   {
-    // Points and lines without a surface are nothing that was refused.
-    snapshot.refusals.emptyParts += otherCells > 0 ? 0 : 1;
+    // Points and lines without a surface, and what planes cut away, are nothing that was refused.
+    snapshot.refusals.emptyParts += otherCells + emptied > 0 ? 0 : 1;
     return otherCells > 0 ? LeftToVTK::NoSurface : left;
   }
   return left;
@@ -436,6 +502,7 @@ Frame SceneReader::read(
 SceneReader::Messages SceneReader::endFrame()
 {
   this->Geometries.endFrame();
+  this->Images.endFrame();
   this->Keys.endFrame();
   for (auto it = this->Paths.begin(); it != this->Paths.end();)
   {

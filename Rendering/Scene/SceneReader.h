@@ -9,10 +9,12 @@
 #include "Rendering/Scene/ActorPaths.h"
 #include "Rendering/Scene/Adapters/MapperAdapter.h"
 #include "Rendering/Scene/AssemblyKeys.h"
+#include "Rendering/Scene/ClippedPieces.h"
 #include "Rendering/Scene/Complaints.h"
 #include "Rendering/Scene/GeometryCache.h"
 #include "Rendering/Scene/HostedCells.h"
 #include "Rendering/Scene/MaterialExtraction.h"
+#include "Rendering/Scene/TextureExtraction.h"
 
 #include "vtkActor.h"
 #include "vtkMapper.h"
@@ -97,6 +99,7 @@ private:
     std::vector<std::uint64_t> pieces;      // keys of the last frame's
     std::unordered_map<std::uint64_t, HostedCells> hosted; // by piece
     std::unordered_map<std::uint64_t, BoundedCopies> copies; // likewise
+    ClippedPieces clipped;
     bool used = false;
   };
   PathMemory& memoryOf(const ActorPath& path);
@@ -108,13 +111,14 @@ private:
   LeftToVTK addPart(const ActorPath& path, const Part& part, Draft& draft);
   LeftToVTK checkMatrix(const ActorPath& path, Snapshot& snapshot, glm::dmat4& localToWorld);
   ExtractionPointer extract(const ActorPath& path, const SurfacePiece& piece, std::uint64_t key,
-    Refusals& refusals);
+    bool textured, Refusals& refusals);
   void addPath(const ActorPath& path, Draft& draft);
   void tellOfOptics(const ActorPath& path, LeftToVTK left);
   void addLights(vtkRenderer* renderer, const ReaderSettings& settings, Snapshot& snapshot);
 
   std::unordered_map<std::uint64_t, PathMemory> Paths;
   GeometryCache Geometries;
+  TextureCache Images;
   AssemblyKeys Keys;
   Complaints Warnings;
   Complaints Errors;

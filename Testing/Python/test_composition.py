@@ -5,14 +5,14 @@ import numpy as np
 import pytest
 import scenes
 import vtkmodules.vtkRenderingVolumeOpenGL2  # noqa: F401
-from vtkhybrid import statistics, vtkHybridMaterial, vtkHybridRayTracingPass
+from vtkhybrid import buffer, statistics, vtkHybridMaterial, vtkHybridRayTracingPass
 from vtkmodules.vtkCommonDataModel import (
     vtkCellArray,
     vtkPiecewiseFunction,
     vtkPlane,
     vtkPolyData,
 )
-from vtkmodules.vtkFiltersCore import vtkAppendPolyData
+from vtkmodules.vtkFiltersCore import vtkAppendPolyData, vtkElevationFilter
 from vtkmodules.vtkFiltersSources import vtkLineSource, vtkPointSource
 from vtkmodules.vtkImagingCore import vtkRTAnalyticSource
 from vtkmodules.vtkImagingSources import vtkImageCanvasSource2D
@@ -70,7 +70,7 @@ def edges():
     return ball(-0.4, 0.4, EdgeVisibility=True, Color=(0.9, 0.4, 0.4))
 
 
-def textured():
+def mip_mapped():
     canvas = vtkImageCanvasSource2D()
     canvas.SetScalarTypeToUnsignedChar()
     canvas.SetNumberOfScalarComponents(3)
@@ -81,6 +81,8 @@ def textured():
     canvas.FillBox(4, 11, 4, 11)
     texture = vtkTexture()
     texture.SetInputConnection(canvas.GetOutputPort())
+    texture.InterpolateOn()
+    texture.MipmapOn()
     actor = scenes.actor_of(scenes.plane(1.0, -0.3))
     actor.SetTexture(texture)
     return actor
@@ -124,7 +126,7 @@ def volume(mapper=None):
     return actor
 
 
-GUESTS = [lines, points, wireframe, edges, textured, translucent, physically_based, text, volume]
+GUESTS = [lines, points, wireframe, edges, mip_mapped, translucent, physically_based, text, volume]
 
 
 def compare(renderer, render):
@@ -257,9 +259,9 @@ def test_translucent_layers(peeling, render):
 
 def test_statistics_name_what_is_left_to_vtk(render):
     """Surfaces that are not traced apart from what VTK draws by its nature."""
-    clipped = ball(0.5)
-    clipped.GetMapper().AddClippingPlane(vtkPlane())
-    guests = [clipped, lines(), wireframe(), translucent(), volume()]
+    streamed = ball(0.5)
+    streamed.GetMapper().SetNumberOfSubPieces(2)
+    guests = [streamed, lines(), wireframe(), translucent(), volume()]
     renderer = scenes.renderer_of(ball(), *guests)
     scenes.look(renderer, (0.6, 1.2, 4))
     rt = vtkHybridRayTracingPass()
@@ -269,6 +271,42 @@ def test_statistics_name_what_is_left_to_vtk(render):
     assert [name.split("#")[1] for name in report["left_to_vtk"]] == ["1"]
     assert [name.split("#")[1] for name in report["hosted"]] == ["2", "3", "4", "5"]
     assert all({**report["left_to_vtk"], **report["hosted"]}.values())
+
+
+def test_what_planes_cut_away_is_seen_by_nobody(render):
+    """Two planes through a ball and its scalars, on a turned actor: VTK's picture; and the part of the
+    shadow that the missing part would cast is lit."""
+    source = scenes.vtkSphereSource()
+    source.SetThetaResolution(30)
+    source.SetPhiResolution(30)
+    source.SetRadius(0.8)
+    elevation = vtkElevationFilter()
+    elevation.SetInputConnection(source.GetOutputPort())
+    elevation.SetLowPoint(0, 0, -0.8)
+    elevation.SetHighPoint(0, 0, 0.8)
+    actor = scenes.actor_of(elevation)
+    actor.RotateX(30)
+    for origin, normal in (((0.1, 0, 0), (1, 0.1, 0)), ((0, 0, 0.3), (0, 0, -1))):
+        plane = vtkPlane()
+        plane.SetOrigin(origin)
+        plane.SetNormal(normal)
+        actor.GetMapper().AddClippingPlane(plane)
+    renderer = scenes.renderer_of(actor, scenes.actor_of(scenes.plane(2.0, -1.0)))
+    renderer.AddLight(scenes.scene_light((0, 5, 0)))
+    scenes.look(renderer, (2.0, 3.0, 3))
+    rt, wrong = compare(renderer, render)
+    assert not statistics(rt)["left_to_vtk"]
+    print(f"clipped: {100 * wrong:.3f} % of the pixels differ")
+    assert wrong < OUTLINE_SHARE
+    rt.SetShadowModeToExact()
+    rt.SetBuffers(["shadow", "prop"])
+    shadows = []
+    for cut in (True, False):
+        if not cut:
+            actor.GetMapper().RemoveAllClippingPlanes()
+        render(renderer)
+        shadows.append(((buffer(rt, "prop") == 1) & (buffer(rt, "shadow") == 0)).sum())
+    assert 0.1 * shadows[1] < shadows[0] < 0.8 * shadows[1]
 
 
 @pytest.mark.parametrize("kind", ["lines", "vertices", "shown vertices"])

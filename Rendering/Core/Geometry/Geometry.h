@@ -61,6 +61,7 @@ struct Geometry
   Attribute<glm::vec3> normals;                        // not normalised; empty: the face's normal
   Attribute<glm::u8vec4> colors;                       // when colorSource == Corner, else empty
   Attribute<glm::vec2> coordinates;                    // when colorSource == Lookup, else empty
+  Attribute<glm::vec2> textureCoordinates;             // empty: no texture is shown
   ColorSource colorSource = ColorSource::Property;
 
   std::vector<glm::u8vec4> lookup; // lookupWidth x lookupHeight texels, row by row

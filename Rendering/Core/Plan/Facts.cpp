@@ -18,8 +18,10 @@ Facts gatherFacts(const Snapshot& snapshot, const PixelBounds& bounds)
     facts.anyPartInView = facts.anyPartInView || seen;
     facts.mirrorInView = facts.mirrorInView || (seen && part.material.isMirror());
     facts.glassInView = facts.glassInView || (seen && part.material.isGlass());
+    facts.features.textures =
+      facts.features.textures || (seen && !part.material.textures.layers.empty());
     facts.anyCaster =
-      facts.anyCaster || (part.castsShadow && part.triangleCount() > 0);
+      facts.anyCaster || (part.castsShadowInMaps() && part.triangleCount() > 0);
   }
   for (const Light& light : snapshot.lights)
   {

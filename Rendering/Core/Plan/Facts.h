@@ -21,6 +21,12 @@ struct Circumstances
   bool buffersWanted = false; // the user asks for this frame's buffers
 };
 
+// What shading has to know of beside plain colours.
+struct SurfaceFeatures
+{
+  bool textures = false;
+};
+
 // What the scene holds, as far as the plan needs to know.
 struct Facts
 {
@@ -31,6 +37,7 @@ struct Facts
   bool anyPartInView = false;
   bool mirrorInView = false;          // same, for a part with reflectance
   bool glassInView = false;           // same, for a part of glass
+  SurfaceFeatures features;           // of the parts in view
   bool anyCaster = false;
   std::vector<bool> lightCanCast;     // per light: false where it casts none, or none that is seen
 };

@@ -232,6 +232,7 @@ FramePlan planStages(const Facts& facts, const Settings& settings, const Depende
 {
   const StageDecision secondary = needsSecondaryRays(facts, settings);
   FramePlan plan;
+  plan.features = facts.features;
   plan[Stage::GeometryUpload] = planUpload(facts, settings, dependencies, caches);
   for (std::size_t light = 0; light < facts.lightCanCast.size(); ++light)
   {

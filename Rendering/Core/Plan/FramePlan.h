@@ -21,6 +21,7 @@ struct FramePlan
   std::array<StageDecision, kStageCount> stages;
   std::vector<StageDecision> shadowMaps; // per light of the snapshot
   std::vector<bool> rasterised;          // per part: drawn into the object intersection buffer
+  SurfaceFeatures features;              // that primary shading has to know of
   bool useSecondaryImage = false;        // composite the secondary image over the primary one
   StageDecision pipelined;               // trace on after the frame, which shows the one before
   bool keepsTracing = false;             // the rays under way since the last frame are still wanted

@@ -27,6 +27,7 @@ using glm::dot;
 using glm::floor;
 using glm::length;
 using glm::max;
+using glm::mix;
 using glm::normalize;
 using glm::pow;
 using glm::reflect;
@@ -37,6 +38,7 @@ using glm::sign;
 
 namespace shading64
 {
+using glm::ivec2;
 using vec2 = glm::dvec2;
 using vec3 = glm::dvec3;
 using vec4 = glm::dvec4;
@@ -48,6 +50,7 @@ using glm::dot;
 using glm::floor;
 using glm::length;
 using glm::max;
+using glm::mix;
 using glm::normalize;
 using glm::pow;
 using glm::reflect;

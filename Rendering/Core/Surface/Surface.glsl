@@ -66,3 +66,15 @@ HRT_FUNCTION HrtSurface hrtSurface(HrtTerms terms)
   surface.power = terms.power;
   return surface;
 }
+
+// One of a part's textures; see TextureLookup.glsl.
+struct HrtTexture
+{
+  ivec2 size;
+  int first; // where its texels are
+  bool floats;
+  int wrap;
+  bool linear;
+  int blend;
+  vec4 border;
+};

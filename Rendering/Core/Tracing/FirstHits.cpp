@@ -71,7 +71,7 @@ FirstHits::Outcome FirstHits::find(const std::uint32_t* ids, std::uint32_t pixel
     {
       Hit other;
       if (this->Points.exactHit(candidates.triangles[i], exact, last, other) &&
-        other.t >= first &&
+        other.t >= first && !this->Points.isHole(other, ray.direction) &&
         (!best.valid() || other.t < best.t ||
           (other.t == best.t && other.triangle > best.triangle)))
       {

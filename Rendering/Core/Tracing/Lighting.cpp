@@ -11,13 +11,22 @@ namespace hrt
 namespace
 {
 
-// A shadow ray is followed through at most so many translucent surfaces; beyond, it counts as blocked.
+// A shadow ray is followed through at most so many translucent surfaces and holes; beyond, it counts as blocked.
 // Each lets less than 1 - 2^-8 of the light through or is invisible in 8 bits.
 constexpr int kMostVeils = 64;
 
-bool isTranslucent(const Part& part)
+// Whether light may pass the part, or some of it. Where `tinted` is off only holes let it through.
+bool isVeil(const Part& part, bool tinted)
 {
-  return part.visibleToRays && part.tintsShadow;
+  return part.visibleToRays && part.tintsShadow && (tinted || part.perforated);
+}
+
+// VTK multiplies textures with what is shaded, ambient light and highlights among it.
+Lighting::Target textured(const Lighting::Target& target, const SurfacePoint& point)
+{
+  Lighting::Target t = target;
+  t.weight *= point.textureColor;
+  return t;
 }
 
 } // namespace
@@ -41,8 +50,8 @@ Lighting::Lighting(const Snapshot& snapshot, const Surfaces& surfaces, const Str
   this->ToView = snapshot.camera.worldToView;
   this->ToView[3] = snapshot.camera.worldToView * glm::dvec4(snapshot.origin, 1.0);
   this->NormalsToView = glm::inverseTranspose(glm::dmat3(this->ToView));
-  this->AnyTranslucent =
-    std::any_of(snapshot.parts.begin(), snapshot.parts.end(), &isTranslucent);
+  this->AnyVeil = std::any_of(snapshot.parts.begin(), snapshot.parts.end(),
+    [&settings](const Part& part) { return isVeil(part, settings.tintedShadows); });
 }
 
 // Single precision never sees a large coordinate: the light is placed relative to the point.
@@ -54,9 +63,10 @@ shading::HrtLight Lighting::lightFrom(const SurfacePoint& point, std::size_t ind
   return light;
 }
 
-void Lighting::shade(const SurfacePoint& point, const glm::dvec3& toViewer, const Target& target,
-  ShadowQueue& queue, RayCount& shadowRays) const
+void Lighting::shade(const SurfacePoint& point, const glm::dvec3& toViewer,
+  const Target& untextured, ShadowQueue& queue, RayCount& shadowRays) const
 {
+  const Target target = textured(untextured, point);
   if (!point.material->lit || this->Scene.lights.empty())
   {
     target.sum += target.weight * shading::hrtUnlit(point.colors);
@@ -67,8 +77,9 @@ void Lighting::shade(const SurfacePoint& point, const glm::dvec3& toViewer, cons
 }
 
 void Lighting::highlights(const SurfacePoint& point, const glm::dvec3& toViewer,
-  const Target& target, ShadowQueue& queue, RayCount& shadowRays) const
+  const Target& untextured, ShadowQueue& queue, RayCount& shadowRays) const
 {
+  const Target target = textured(untextured, point);
   if (!point.material->lit)
   {
     return;
@@ -172,7 +183,7 @@ glm::vec3 Lighting::transmittance(Ray ray, int bounces, PathSignature& signature
       return share;
     }
     const SurfacePoint point = this->Points.at(hit, ray.direction);
-    if (isTranslucent(this->Scene.parts[point.part]))
+    if (isVeil(this->Scene.parts[point.part], this->Settings.tintedShadows))
     {
       signature += signatureOf(PathEvent::Veil, bounces, point.part, point.frontSide ? 1 : 0);
       const float a = glm::clamp(point.opacity, 0.0f, 1.0f);
@@ -214,7 +225,7 @@ float Lighting::visibleShare(const SurfacePoint& point, std::size_t light) const
   {
     return 0.0f;
   }
-  if (!this->Settings.tintedShadows || !this->AnyTranslucent)
+  if (!this->AnyVeil)
   {
     return 1.0f;
   }
@@ -228,7 +239,6 @@ void Lighting::flush(ShadowQueue& queue, RayOrder order, std::vector<glm::vec3>&
 {
   std::vector<std::uint8_t> blocked(queue.rays.size());
   this->Rays.occluded(queue.rays.data(), blocked.data(), queue.rays.size(), order);
-  const bool veils = this->Settings.tintedShadows && this->AnyTranslucent;
   for (std::size_t i = 0; i < queue.rays.size(); ++i)
   {
     const std::uint32_t pixel = queue.pixels[i];
@@ -237,7 +247,7 @@ void Lighting::flush(ShadowQueue& queue, RayOrder order, std::vector<glm::vec3>&
       signatureOf(PathEvent::Light, bounces, queue.lights[i], blocked[i] ? 0 : 1);
     if (!blocked[i])
     {
-      sums[pixel] += veils
+      sums[pixel] += this->AnyVeil
         ? queue.portions[i] * this->transmittance(queue.rays[i], bounces, signatures[pixel])
         : queue.portions[i];
     }

@@ -92,7 +92,7 @@ private:
   std::vector<shading::HrtLight> ViewLights; // in view coordinates, as shadow maps are looked up in
   glm::dmat4 ToView; // from coordinates relative to the scene's origin
   glm::dmat3 NormalsToView;
-  bool AnyTranslucent = false;
+  bool AnyVeil = false;
   // The eye of a perspective camera, relative to the scene's origin.
   bool HasEye = false;
   glm::dvec3 Eye{ 0.0 };

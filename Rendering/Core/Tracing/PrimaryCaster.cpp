@@ -109,11 +109,12 @@ private:
   {
     const Part& part = this->Frame.snapshot.parts[this->Frame.snapshot.partOf(hit.triangle)];
     const bool front = part.material.cullFront, back = part.material.cullBack;
-    if (!part.visibleToCamera || front == back)
+    if (!part.visibleToCamera || (front == back && !part.perforated))
     {
       return part.visibleToCamera && !front;
     }
-    return this->Frame.surfaces.at(hit, ray.direction).frontSide ? !front : !back;
+    const SurfacePoint point = this->Frame.surfaces.at(hit, ray.direction);
+    return (point.frontSide ? !front : !back) && point.opacity > 0.0f;
   }
 
   void store(std::uint32_t pixel, Ray ray, Hit hit, RayCount& count)

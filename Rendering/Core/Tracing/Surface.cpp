@@ -48,6 +48,16 @@ glm::dvec3 cornerNormal(const Geometry& geometry, std::size_t triangle, const Hi
   return shading64::hrtInterpolate3(n[0], n[1], n[2], hit.u, hit.v);
 }
 
+// Interpolating between opaque texels may round to less than 1: such textures are not asked.
+float opacityOf(const Part& part, float opacity, float texture)
+{
+  if (part.perforated)
+  {
+    return texture > 0.0f ? 1.0f : 0.0f;
+  }
+  return part.material.textures.alpha == Texture::Alpha::Opaque ? opacity : opacity * texture;
+}
+
 } // namespace
 
 Surfaces::Surfaces(const Snapshot& snapshot)
@@ -133,13 +143,21 @@ SurfacePoint Surfaces::at(const Hit& hit, const glm::dvec3& direction) const
   point.normal = shading64::hrtSmoothNormal(smooth, sides.geometricNormal, point.frontSide);
   point.opticalNormal = shading64::hrtSmoothNormal(smooth, sides.geometricNormal, point.outside);
 
-  const shading::HrtTerms terms =
-    shading::SurfaceColors(part, triangle, part.copyOf(hit.triangle))
-      .hrtTermsAt(static_cast<float>(hit.u), static_cast<float>(hit.v), point.frontSide);
+  shading::SurfaceColors colors(part, triangle, part.copyOf(hit.triangle));
+  const float u = static_cast<float>(hit.u), v = static_cast<float>(hit.v);
+  const shading::HrtTerms terms = colors.hrtTermsAt(u, v, point.frontSide);
+  const glm::vec4 texture = colors.textureColor(u, v, point.frontSide);
   point.colors = shading::hrtSurface(terms);
-  point.opacity = terms.opacity;
-  point.diffuseColor = terms.diffuseColor;
+  point.textureColor = glm::vec3(texture);
+  point.diffuseColor = terms.diffuseColor * point.textureColor;
+  point.opacity = opacityOf(part, terms.opacity, texture.a);
   return point;
+}
+
+bool Surfaces::isHole(const Hit& hit, const glm::dvec3& direction) const
+{
+  return this->Scene.parts[this->Scene.partOf(hit.triangle)].perforated &&
+    this->at(hit, direction).opacity == 0.0f;
 }
 
 bool primaryHit(const Snapshot& snapshot, TriangleId id, const Ray& ray, Hit& hit)

@@ -31,8 +31,9 @@ struct SurfacePoint
   bool outside = true;
 
   shading::HrtSurface colors{};
-  glm::vec3 diffuseColor{ 1.0f }; // without its coefficient: the tint of glass
-  float opacity = 1.0f;
+  glm::vec3 textureColor{ 1.0f }; // multiplies what is shaded
+  glm::vec3 diffuseColor{ 1.0f }; // without its coefficient, textured: the tint of glass
+  float opacity = 1.0f;           // 0 in a hole
 
   // How far rounding may have put `position` off the triangle, generously: see Surface.cpp.
   double positionError = 0.0;
@@ -53,6 +54,9 @@ public:
 
   // The surface at a hit, as seen along the ray's direction.
   SurfacePoint at(const Hit& hit, const glm::dvec3& direction) const;
+
+  // Whether the surface has a hole there.
+  bool isHole(const Hit& hit, const glm::dvec3& direction) const;
 
 private:
   struct Placement

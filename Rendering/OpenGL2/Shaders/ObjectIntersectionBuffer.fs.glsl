@@ -6,9 +6,16 @@ flat in int triangle;
 in vec2 barycentric;
 uniform int directRendering;
 out uvec4 hit;
+//HRT::Holes
 
 void main()
 {
+#ifdef HRT_HOLES
+  if (isHole(triangle, barycentric, gl_FrontFacing))
+  {
+    discard;
+  }
+#endif
   uvec2 uv = uvec2(0u);
   if (directRendering == 1)
   {

@@ -54,7 +54,7 @@ float lightVisibility(int index, HrtLight light, vec3 p, vec3 ng, float folds)
 // Where the data of the triangle at hand lie, for what the shared source of colours asks for.
 int partNumber;
 ivec4 partBases;  // first triangle, normals, colours, coordinates
-ivec4 partLookup; // start, width, height
+ivec4 partLookup; // start, width, height; texture coordinates
 int cornerInPart; // the first of the triangle's three
 int colorSource;
 
@@ -77,6 +77,10 @@ HrtTerms fetchTerms(bool front)
 #define HRT_COLOR_ONE 1.0
 //HRT::SurfaceColors
 
+#ifdef HRT_TEXTURES
+//HRT::Textures
+#endif
+
 vec4 shadeHit(uvec4 hit)
 {
   int triangle = int(hit.x - 1u);
@@ -88,7 +92,7 @@ vec4 shadeHit(uvec4 hit)
   colorSource = partBases.z >= 0 ? HRT_COLOR_OF_CORNERS
     : partBases.w >= 0           ? HRT_COLOR_OF_LOOKUP
                                  : HRT_COLOR_OF_PROPERTY;
-  vec4 flags = texelFetch(partTable, part * PART_TEXELS + 13); // lit, folds
+  vec4 flags = texelFetch(partTable, part * PART_TEXELS + 13); // lit, folds, textures: on back
 
   mat4 positionToView = fetchMatrix(partTable, part * PART_TEXELS);
   vec3 a = (positionToView * texelFetch(positions, triangle * 3)).xyz;
@@ -147,6 +151,13 @@ vec4 shadeHit(uvec4 hit)
       }
     }
   }
+#ifdef HRT_TEXTURES
+  if (sides.front || flags.z == 1.0)
+  {
+    readyTextures(part, flags, partLookup.w, cornerInPart);
+    color *= hrtTextureColor(uv.x, uv.y).rgb;
+  }
+#endif
   return vec4(color, 1.0);
 }
 

@@ -153,6 +153,61 @@ TEST(Lighting, TranslucentSurfacesTintWhenAsked)
   EXPECT_FLOAT_EQ(floor.brightnessAt(0.5), once * once);
 }
 
+// Light goes through the holes of a texture and is blocked beside them, tinted shadows or not.
+TEST(Lighting, HolesLetLightThrough)
+{
+  Floor floor(3.0);
+  floor.addLight(Light::Kind::Directional, { 0, 0, 5 });
+  Part& sieve = floor.scene.parts[1];
+  auto mapped = std::make_shared<Geometry>(*sieve.geometry);
+  for (const glm::vec3& p : mapped->positions)
+  {
+    mapped->textureCoordinates.values.push_back({ 0.5f * (p.x + 1.0f), 0.5f });
+  }
+  auto texture = std::make_shared<Texture>();
+  texture->version = 1;
+  texture->width = 4;
+  texture->height = 1;
+  texture->bytes.assign(4, { 255, 0, 255, 255 });
+  texture->bytes[2].a = 0; // where 0 < x < 1/2
+  sieve.geometry = mapped;
+  sieve.material.textures.layers = { { texture, TextureBlend::None } };
+  sieve.material.textures.alpha = Texture::Alpha::Holes;
+  sieve.castsShadow = false;
+  sieve.tintsShadow = true;
+  sieve.perforated = true;
+  floor.structure.update(floor.scene);
+  for (const bool tinted : { false, true })
+  {
+    floor.settings.tintedShadows = tinted;
+    EXPECT_EQ(floor.brightnessAt(0.25), 1.0f) << "through the hole";
+    EXPECT_EQ(floor.brightnessAt(0.75), 0.0f) << "beside it";
+    EXPECT_EQ(floor.brightnessAt(2.0), 1.0f) << "beside the part";
+  }
+}
+
+TEST(Lighting, TexturesMultiplyAmbientAndUnlitColours)
+{
+  Floor floor(1000.0);
+  auto mapped = std::make_shared<Geometry>(*floor.scene.parts[0].geometry);
+  mapped->textureCoordinates.values.assign(mapped->vertexCount(), glm::vec2(0.5f));
+  auto texture = std::make_shared<Texture>();
+  texture->version = 1;
+  texture->width = texture->height = 1;
+  texture->floats = { { 0.5f, 0.5f, 0.5f, 1.0f } };
+  Material& material = floor.scene.parts[0].material;
+  floor.scene.parts[0].geometry = mapped;
+  material.textures.layers = { { texture, TextureBlend::None } };
+  material.front.ambient = 0.25f;
+  material.front.diffuse = 0.5f;
+  EXPECT_EQ(floor.brightnessAt(0.5), 0.375f); // no light at all
+  floor.addLight(Light::Kind::Directional, {});
+  EXPECT_EQ(floor.brightnessAt(0.5), 0.125f); // in shadow: ambient
+  EXPECT_EQ(floor.brightnessAt(2.0), 0.375f);
+  material.lit = false;
+  EXPECT_EQ(floor.brightnessAt(0.5), 0.375f);
+}
+
 // What casts none is no translucent surface: light passes it whole.
 TEST(Lighting, WhatCastsNoShadowTakesNoLight)
 {

@@ -94,6 +94,36 @@ std::string flagsAfter(const std::function<void(Snapshot&)>& change)
   return flags;
 }
 
+TextureLayer layer(std::uint64_t version)
+{
+  auto texture = std::make_shared<Texture>();
+  texture->version = version;
+  return { texture, TextureBlend::None };
+}
+
+// A texture with holes says what is seen where; another one only how it looks.
+TEST(Snapshot, AnotherSetOfHolesIsAnotherSurface)
+{
+  for (const bool perforated : { false, true })
+  {
+    Snapshot before, now;
+    for (Snapshot* s : { &before, &now })
+    {
+      Part& part = scenes::addPart(*s, triangles(1));
+      part.geometry = before.parts[0].geometry;
+      part.perforated = perforated;
+    }
+    before.parts[0].material.textures.layers = { layer(1) };
+    now.parts[0].material.textures.layers = { layer(1) };
+    Changes same = compareSnapshots(&before, now);
+    EXPECT_FALSE(same.geometry || same.materials);
+    now.parts[0].material.textures.layers = { layer(2) };
+    Changes other = compareSnapshots(&before, now);
+    EXPECT_TRUE(other.materials);
+    EXPECT_EQ(other.geometry, perforated);
+  }
+}
+
 TEST(Snapshot, EachChangeRaisesItsFlagAlone)
 {
   const struct
@@ -107,6 +137,7 @@ TEST(Snapshot, EachChangeRaisesItsFlagAlone)
     { "geometry", [](Snapshot& s) { s.parts[1].visibleToCamera = false; } },
     { "geometry", [](Snapshot& s) { s.parts[1].visibleToRays = false; } },
     { "geometry", [](Snapshot& s) { s.parts[1].castsShadow = false; } },
+    { "geometry", [](Snapshot& s) { s.parts[1].perforated = true; } },
     { "geometry", [](Snapshot& s) { s.parts[1].firstTriangle = 7; } },
     { "geometry", [](Snapshot& s) { s.parts.pop_back(); } },
     { "geometry", [](Snapshot& s) { std::swap(s.parts[0], s.parts[1]); } },
@@ -114,6 +145,8 @@ TEST(Snapshot, EachChangeRaisesItsFlagAlone)
     { "transforms", [](Snapshot& s) { s.origin.x = 1; } },
     { "materials", [](Snapshot& s) { s.parts[0].material.front.diffuse = 0.5f; } },
     { "materials", [](Snapshot& s) { s.parts[0].material.reflectance = 0.5f; } },
+    { "materials", [](Snapshot& s) { s.parts[0].material.textures.onBack = false; } },
+    { "materials", [](Snapshot& s) { s.parts[0].material.textures.layers = { layer(1) }; } },
     { "materials culling", [](Snapshot& s) { s.parts[0].material.cullBack = true; } },
     { "lightColors", [](Snapshot& s) { s.lights[1].color.g = 0.5f; } },
     { "lightColors", [](Snapshot& s) { s.lights[1].attenuation.y = 0.5f; } },

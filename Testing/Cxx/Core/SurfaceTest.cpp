@@ -119,6 +119,77 @@ TEST(Surface, LookupTakesTheNearestTexel)
   EXPECT_EQ(seen(s, { 0.75, 0, 1 }, kDown).opacity, 0.0f);
 }
 
+// A floor under a texture of four texels: red, green, blue, and white with no opacity.
+Part& addTexturedFloor(Snapshot& s)
+{
+  auto mapped = std::make_shared<Geometry>(*floorQuad());
+  mapped->version = 1000003;
+  for (const glm::vec3& p : mapped->positions)
+  {
+    mapped->textureCoordinates.values.push_back({ 0.5f * (p.x + 1.0f), 0.5f });
+  }
+  auto texture = std::make_shared<Texture>();
+  texture->version = 1;
+  texture->width = 4;
+  texture->height = 1;
+  texture->bytes = { { 255, 0, 0, 255 }, { 0, 255, 0, 255 }, { 0, 0, 255, 255 },
+    { 255, 255, 255, 0 } };
+  Part& part = scenes::addPart(s, mapped);
+  part.material.textures.layers = { { texture, TextureBlend::None } };
+  part.material.textures.alpha = Texture::Alpha::Holes;
+  return part;
+}
+
+TEST(Surface, TexturesMultiplyWhatIsShaded)
+{
+  Snapshot s;
+  Part& part = addTexturedFloor(s);
+  part.material.front.diffuseColor = { 0.5f, 0.25f, 1.0f };
+  part.material.front.opacity = 0.5f;
+  const SurfacePoint p = seen(s, { -0.25, 0, 1 }, kDown);
+  EXPECT_EQ(p.colors.diffuse, glm::vec3(0.5f, 0.25f, 1.0f)) << "lit without the texture";
+  EXPECT_EQ(p.textureColor, glm::vec3(0, 1, 0));
+  EXPECT_EQ(p.diffuseColor, glm::vec3(0, 0.25f, 0)) << "what glass is tinted with";
+  EXPECT_EQ(p.opacity, 0.5f);
+  EXPECT_EQ(seen(s, { 0.75, 0, 1 }, kDown).opacity, 0.0f);
+  part.material.textures.onBack = false;
+  EXPECT_EQ(seen(s, { -0.25, 0, -1 }, -kDown).textureColor, glm::vec3(1.0f));
+}
+
+TEST(Surface, PerforatedSurfacesAreThereOrNot)
+{
+  Snapshot s;
+  addTexturedFloor(s).perforated = true;
+  EXPECT_EQ(seen(s, { 0.25, 0, 1 }, kDown).opacity, 1.0f);
+  EXPECT_EQ(seen(s, { 0.75, 0, 1 }, kDown).opacity, 0.0f);
+  scenes::BruteForce structure;
+  structure.update(s);
+  for (const double x : { -0.75, -0.25, 0.25, 0.75 })
+  {
+    Ray ray;
+    ray.origin = { x, 0.1, 1 };
+    ray.direction = kDown;
+    EXPECT_EQ(Surfaces(s).isHole(structure.intersect(ray), kDown), x == 0.75);
+  }
+}
+
+// Between texels of full opacity a filter rounds; the surface stays opaque.
+TEST(Surface, OpaqueTexturesLeaveTheOpacityAlone)
+{
+  Snapshot s;
+  Part& part = addTexturedFloor(s);
+  auto texture = std::make_shared<Texture>(*part.material.textures.layers[0].texture);
+  texture->bytes[3].a = 255;
+  texture->linear = true;
+  part.material.textures.layers[0].texture = texture;
+  part.material.textures.alpha = Texture::Alpha::Opaque;
+  scenes::Random random(3);
+  for (int i = 0; i < 1000; ++i)
+  {
+    ASSERT_EQ(seen(s, { random(-1, 1), random(-1, 1), 1 }, kDown).opacity, 1.0f);
+  }
+}
+
 TEST(Surface, PrimaryHitMovesOntoTheTriangle)
 {
   Snapshot s;

@@ -102,29 +102,49 @@ TEST_F(Classification, WireframeAndPoints)
   this->expectTraced();
 }
 
-TEST_F(Classification, ClippingPlanes)
+// What is cut away is not there for anybody; planes are in the world.
+TEST_F(Classification, ClippingPlanesCutTheSurface)
 {
   vtkNew<vtkPlane> plane;
+  plane->SetOrigin(0.25, 0, 0);
+  plane->SetNormal(1, 0, 0);
   this->mapper->AddClippingPlane(plane);
-  this->expectLeftAndUnseen("clipped");
+  this->expectTraced();
+  EXPECT_EQ(this->snapshot->boundsMin.x, 0.25);
+  const std::uint64_t version = this->snapshot->parts[0].geometry->version;
+  EXPECT_EQ(this->update().parts.at(0).geometry->version, version);
+  this->actor->SetPosition(0.5, 0, 0);
+  EXPECT_EQ(this->update().boundsMin.x, 0.5) << "the whole square";
+  this->actor->SetPosition(0, 0, 0);
+  plane->SetOrigin(2, 0, 0);
+  EXPECT_TRUE(this->update().parts.empty());
+  EXPECT_EQ(this->snapshot->refusals.total(), 0u);
+  EXPECT_TRUE(this->scene->IsDrawnByTracer(this->actor));
   this->mapper->RemoveAllClippingPlanes();
   this->expectTraced();
+  EXPECT_EQ(this->snapshot->boundsMin.x, 0.0);
 }
 
-TEST_F(Classification, Textures)
+TEST_F(Classification, TexturesThatAreNotTraced)
 {
   vtkNew<vtkImageData> image;
   image->SetDimensions(2, 2, 1);
   image->AllocateScalars(VTK_UNSIGNED_CHAR, 3);
   vtkNew<vtkTexture> texture;
   texture->SetInputData(image);
-  texture->UseSRGBColorSpaceOn(); // else vtkProperty refuses it
   this->actor->SetTexture(texture);
-  this->expectLeftButSeen("textured", true);
+  this->expectTraced();
+  texture->MipmapOn();
+  this->expectTraced(); // without interpolation VTK uses none
+  texture->InterpolateOn();
+  this->expectLeftButSeen("mip maps", true);
+  texture->MipmapOff();
+  this->expectTraced();
+  image->SetDimensions(2, 2, 2);
+  image->AllocateScalars(VTK_UNSIGNED_CHAR, 3);
+  this->expectLeftButSeen("not an image", true);
   this->actor->SetTexture(nullptr);
   this->expectTraced();
-  this->property->SetTexture("albedoTex", texture);
-  this->expectLeftButSeen("textured", true);
 }
 
 TEST_F(Classification, Edges)
@@ -211,8 +231,7 @@ TEST_F(Classification, WhatIsVTKsByNatureIsHosted)
   this->update();
   EXPECT_TRUE(this->scene->IsHosted(this->actor));
   this->property->SetOpacity(1.0);
-  vtkNew<vtkPlane> plane;
-  this->mapper->AddClippingPlane(plane);
+  this->mapper->SetNumberOfSubPieces(2);
   this->update();
   EXPECT_FALSE(this->scene->IsHosted(this->actor)) << "a surface";
   vtkNew<vtkVolume> volume;

@@ -12,6 +12,7 @@
 #include "vtkImageData.h"
 #include "vtkLODActor.h"
 #include "vtkMultiBlockDataSet.h"
+#include "vtkPlane.h"
 #include "vtkPointData.h"
 #include "vtkProperty.h"
 #include "vtkSphereSource.h"
@@ -37,7 +38,12 @@ protected:
 
   std::vector<std::int64_t> cells(const hrt::Part& part)
   {
-    return part.geometry->cellIds;
+    std::vector<std::int64_t> ids;
+    for (std::size_t i = 0; i < part.geometry->triangleCount(); ++i)
+    {
+      ids.push_back(part.geometry->cellIds[i]);
+    }
+    return ids;
   }
 
   vtkNew<vtkActor> actor;
@@ -98,7 +104,7 @@ TEST_F(Mappers, DataSetsAreColouredByTheMappersOwnSettings)
   const hrt::Snapshot& s = this->update();
   const hrt::Geometry& g = *s.parts.at(0).geometry;
   ASSERT_EQ(g.colorSource, hrt::ColorSource::Corner);
-  EXPECT_NE(g.colors.front(), g.colors.back());
+  EXPECT_NE(g.colors.values.front(), g.colors.values.back());
   mapper->ScalarVisibilityOff();
   EXPECT_EQ(this->update().parts.at(0).geometry->colorSource, hrt::ColorSource::Property);
 }
@@ -239,7 +245,7 @@ TEST_F(Composite, BlocksAreColouredByTheirOwnScalars)
   const hrt::Snapshot& s = this->update();
   const hrt::Geometry &first = *s.parts.at(0).geometry, &second = *s.parts.at(1).geometry;
   ASSERT_EQ(first.colorSource, hrt::ColorSource::Corner);
-  EXPECT_NE(first.colors.front(), second.colors.front());
+  EXPECT_NE(first.colors.values.front(), second.colors.values.front());
   EXPECT_EQ(s.parts.at(2).geometry->colorSource, hrt::ColorSource::Property);
   const std::uint64_t version = second.version;
   this->squares[0]->GetPointData()->GetScalars()->Fill(0.5);
@@ -404,6 +410,15 @@ TEST_F(Glyphs, AreColouredByTheScalarsOfTheirPoints)
   EXPECT_EQ(part.geometry->colorSource, hrt::ColorSource::Property) << "not by the source's";
   this->mapper->ScalarVisibilityOff();
   EXPECT_TRUE(this->update().parts.at(0).copies->colors.empty());
+}
+
+TEST_F(Glyphs, ThatPlanesCutAreLeft)
+{
+  vtkNew<vtkPlane> plane;
+  this->mapper->AddClippingPlane(plane);
+  this->update();
+  EXPECT_FALSE(this->scene->IsDrawnByTracer(this->actor));
+  EXPECT_FALSE(this->scene->IsHosted(this->actor));
 }
 
 TEST_F(Glyphs, OfLinesAreHosted)
