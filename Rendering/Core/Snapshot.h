@@ -108,6 +108,9 @@ struct Part
   // A shadow map knows depths, and holes in them, but no shares.
   bool castsShadowInMaps() const { return castsShadow || (perforated && tintsShadow); }
 
+  // Nothing of it can shadow the rest of it.
+  bool isFlat() const { return geometry->flat && !copies; }
+
   std::size_t copyCount() const { return copies ? copies->count() : 1; }
   // Of all copies together.
   std::uint64_t triangleCount() const

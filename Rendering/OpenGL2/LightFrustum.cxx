@@ -92,14 +92,14 @@ bool shadowsNothing(const Snapshot& snapshot, std::size_t index, const Light& li
 {
   const Part& part = snapshot.parts[index];
   glm::dvec3 normal, point;
-  if (!part.geometry->flat || !litPlane(part, light, normal, point))
+  if (!part.isFlat() || !litPlane(part, light, normal, point))
   {
     return false;
   }
   for (std::size_t i = 0; i < snapshot.parts.size(); ++i)
   {
     const Part& other = snapshot.parts[i];
-    if (i == index || !other.visibleToCamera || other.geometry->triangleCount() == 0)
+    if (i == index || !other.visibleToCamera || other.triangleCount() == 0)
     {
       continue;
     }
@@ -235,7 +235,7 @@ std::vector<bool> castersFor(const Snapshot& snapshot, const Light& light)
   for (std::size_t i = 0; i < snapshot.parts.size(); ++i)
   {
     const Part& part = snapshot.parts[i];
-    casters.push_back(part.castsShadowInMaps() && part.geometry->triangleCount() > 0 &&
+    casters.push_back(part.castsShadowInMaps() && part.triangleCount() > 0 &&
       !shadowsNothing(snapshot, i, light));
   }
   return casters;

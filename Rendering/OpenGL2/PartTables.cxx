@@ -48,7 +48,7 @@ void appendPart(std::vector<glm::vec4>& table, const Part& part, const glm::dmat
   }
   appendTerms(table, part.material.front);
   appendTerms(table, part.material.back);
-  table.emplace_back(part.material.lit ? 1.0f : 0.0f, part.geometry->flat ? 0.0f : 1.0f,
+  table.emplace_back(part.material.lit ? 1.0f : 0.0f, part.isFlat() ? 0.0f : 1.0f,
     part.material.textures.onBack ? 1.0f : 0.0f, part.material.textures.transformed ? 1.0f : 0.0f);
   appendTextureTransform(table, part, texturePlace);
 }

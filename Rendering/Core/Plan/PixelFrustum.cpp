@@ -42,14 +42,17 @@ PixelFrustum::PixelFrustum(const Camera& camera, const PixelBounds& bounds)
 // A box is outside of a plane when its corners are. Written so that a NaN counts as inside.
 bool PixelFrustum::mayShow(const Part& part) const
 {
-  const Geometry& geometry = *part.geometry;
-  if (this->Empty || geometry.triangleCount() == 0)
+  if (this->Empty || part.triangleCount() == 0)
   {
     return false;
   }
-  const glm::dmat4 toClip = this->WorldToClip * part.positionsToWorld();
-  const glm::dvec3 farthest(
-    glm::max(glm::abs(geometry.boundsMin), glm::abs(geometry.boundsMax)));
+  const glm::dmat4 toClip =
+    this->WorldToClip * (part.copies ? part.localToWorld : part.positionsToWorld());
+  const glm::dvec3 lower =
+    part.copies ? part.copies->boundsMin : glm::dvec3(part.geometry->boundsMin);
+  const glm::dvec3 upper =
+    part.copies ? part.copies->boundsMax : glm::dvec3(part.geometry->boundsMax);
+  const glm::dvec3 farthest = glm::max(glm::abs(lower), glm::abs(upper));
   glm::dvec4 error = glm::abs(toClip[3]);
   for (int column = 0; column < 3; ++column)
   {
@@ -61,9 +64,8 @@ bool PixelFrustum::mayShow(const Part& part) const
   for (int corner = 0; corner < 8; ++corner)
   {
     const glm::dvec4 clip = toClip *
-      glm::dvec4((corner & 1) ? geometry.boundsMax.x : geometry.boundsMin.x,
-        (corner & 2) ? geometry.boundsMax.y : geometry.boundsMin.y,
-        (corner & 4) ? geometry.boundsMax.z : geometry.boundsMin.z, 1.0);
+      glm::dvec4((corner & 1) ? upper.x : lower.x, (corner & 2) ? upper.y : lower.y,
+        (corner & 4) ? upper.z : lower.z, 1.0);
     for (int i = 0; i < 6; ++i)
     {
       const double margin = glm::dot(glm::abs(this->Planes[i]), error);

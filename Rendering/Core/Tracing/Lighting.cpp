@@ -204,7 +204,7 @@ float Lighting::shareFromMap(const SurfacePoint& point, std::size_t light) const
   const glm::vec3 position(this->ToView * glm::dvec4(point.position, 1.0));
   const glm::vec3 normal(
     glm::normalize(this->NormalsToView * point.geometricNormal));
-  const float folds = this->Scene.parts[point.part].geometry->flat ? 0.0f : 1.0f;
+  const float folds = this->Scene.parts[point.part].isFlat() ? 0.0f : 1.0f;
   return shading::ShadowLookup(tables).hrtLightVisibility(
     slot.firstFace, slot.faceCount, this->ViewLights[light], position, normal, folds);
 }

@@ -48,7 +48,7 @@ struct Card
   }
   glm::vec4 at(float u, float v, bool front = true) const
   {
-    return shading::SurfaceColors(this->part, 0).textureColor(u, v, front);
+    return shading::SurfaceColors(this->part, 0, 0).textureColor(u, v, front);
   }
 };
 
