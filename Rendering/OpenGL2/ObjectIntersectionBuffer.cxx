@@ -8,8 +8,9 @@
 #include "vtkOpenGLState.h"
 #include "vtkShaderProgram.h"
 
-#include "ObjectIntersectionBuffer_fs.h"
-#include "ObjectIntersectionBuffer_vs.h"
+#include "DirectRendering_fs.h"
+#include "ItemBuffer_fs.h"
+#include "ItemBuffer_vs.h"
 
 #include <cstddef>
 #include <vector>
@@ -20,6 +21,24 @@ namespace gl
 {
 namespace
 {
+
+// A triangle has the flat outputs of its last vertex for the time this lives: OpenGL's default, which
+// a host may have changed.
+class ScopedLastVertexConvention
+{
+public:
+  ScopedLastVertexConvention()
+  {
+    glGetIntegerv(GL_PROVOKING_VERTEX, &this->Before);
+    glProvokingVertex(GL_LAST_VERTEX_CONVENTION);
+  }
+  ~ScopedLastVertexConvention() { glProvokingVertex(static_cast<GLenum>(this->Before)); }
+  ScopedLastVertexConvention(const ScopedLastVertexConvention&) = delete;
+  ScopedLastVertexConvention& operator=(const ScopedLastVertexConvention&) = delete;
+
+private:
+  GLint Before = 0;
+};
 
 // As VTK's property does it; both flags together hide everything.
 void setCulling(vtkOpenGLState* state, const Material& material)
@@ -71,13 +90,14 @@ bool ObjectIntersectionBuffer::draw(vtkOpenGLRenderWindow* window, const Snapsho
   {
     return false;
   }
-  vtkShaderProgram* program =
-    readyProgram(window, ObjectIntersectionBuffer_vs, ObjectIntersectionBuffer_fs);
+  const bool direct = this->Mode == Visibility::DirectRendering;
+  vtkShaderProgram* program = direct
+    ? readyProgram(window, directRenderingSource(), DirectRendering_fs)
+    : readyProgram(window, ItemBuffer_vs, ItemBuffer_fs);
   if (!program)
   {
     return false;
   }
-  program->SetUniformi("directRendering", this->Mode == Visibility::DirectRendering ? 1 : 0);
 
   const GLuint noHit[4] = { 0, 0, 0, 0 };
   const GLfloat far = this->Convention.clearDepth();
@@ -87,7 +107,18 @@ bool ObjectIntersectionBuffer::draw(vtkOpenGLRenderWindow* window, const Snapsho
   glClearBufferfv(GL_DEPTH, 0, &far);
 
   ScopedDepthConvention depth(this->Convention);
-  geometry.bindForDrawing(static_cast<GLuint>(program->GetHandle()));
+  const ScopedLastVertexConvention provoking;
+  const ScopedTextureUnits units(direct ? GeometryBuffers::kFetchUnits : 0);
+  if (direct)
+  {
+    geometry.bindForFetching(0);
+    program->SetUniformi("indices", 0);
+    program->SetUniformi("positions", 1);
+  }
+  else
+  {
+    geometry.bindForDrawing(static_cast<GLuint>(program->GetHandle()));
+  }
   const glm::dmat4 toClip = this->Convention.drawMatrix(snapshot.camera.viewToClip) *
     snapshot.camera.worldToView;
   for (std::size_t i = 0; i < parts.size(); ++i)
@@ -100,7 +131,15 @@ bool ObjectIntersectionBuffer::draw(vtkOpenGLRenderWindow* window, const Snapsho
     setCulling(window->GetState(), part.material);
     glm::mat4 matrix(toClip * part.positionsToWorld());
     program->SetUniformMatrix4x4("positionToClip", &matrix[0][0]);
-    geometry.draw(part);
+    if (direct)
+    {
+      geometry.drawCorners(i);
+    }
+    else
+    {
+      program->SetUniformi("vertexToTriangle", geometry.vertexToTriangle(i));
+      geometry.draw(i);
+    }
     this->TrianglesDrawn += part.geometry->triangleCount();
   }
   glBindVertexArray(0);

@@ -7,6 +7,7 @@
 #include "vtkOpenGLShaderCache.h"
 #include "vtkShaderProgram.h"
 
+#include "DirectRendering_vs.h"
 #include "RayCaster_fs.h"
 #include "Shading.h"
 #include "ShadowLookup.h"
@@ -20,6 +21,15 @@ namespace gl
 {
 namespace
 {
+
+// Texels of three components would need OpenGL 4.0, and four would waste a quarter of the memory.
+const char* const kFetchVector = R"(
+vec3 fetchVector(samplerBuffer table, int i)
+{
+  return vec3(texelFetch(table, 3 * i).r, texelFetch(table, 3 * i + 1).r,
+    texelFetch(table, 3 * i + 2).r);
+}
+)";
 
 std::string definitions()
 {
@@ -45,9 +55,10 @@ std::string definitions()
 
 //------------------------------------------------------------------------------
 vtkShaderProgram* readyProgram(
-  vtkOpenGLRenderWindow* window, const char* vertexShader, const std::string& fragmentShader)
+  vtkOpenGLRenderWindow* window, const std::string& vertexShader, const std::string& fragmentShader)
 {
-  return window->GetShaderCache()->ReadyShaderProgram(vertexShader, fragmentShader.c_str(), "");
+  return window->GetShaderCache()->ReadyShaderProgram(
+    vertexShader.c_str(), fragmentShader.c_str(), "");
 }
 
 //------------------------------------------------------------------------------
@@ -55,7 +66,19 @@ const std::string& rayCasterSource()
 {
   static const std::string source = [] {
     std::string text = RayCaster_fs;
+    vtkShaderProgram::Substitute(text, "//HRT::Fetch", kFetchVector);
     vtkShaderProgram::Substitute(text, "//HRT::Shading", definitions() + Shading + ShadowLookup);
+    return text;
+  }();
+  return source;
+}
+
+//------------------------------------------------------------------------------
+const std::string& directRenderingSource()
+{
+  static const std::string source = [] {
+    std::string text = DirectRendering_vs;
+    vtkShaderProgram::Substitute(text, "//HRT::Fetch", kFetchVector);
     return text;
   }();
   return source;

@@ -15,10 +15,13 @@ namespace gl
 
 // Null after an error message when a shader does not compile.
 vtkShaderProgram* readyProgram(
-  vtkOpenGLRenderWindow* window, const char* vertexShader, const std::string& fragmentShader);
+  vtkOpenGLRenderWindow* window, const std::string& vertexShader, const std::string& fragmentShader);
 
 // The ray caster's fragment shader with the shared shading source and the layouts filled in.
 const std::string& rayCasterSource();
+
+// The vertex shader of direct rendering with the tables' layout filled in.
+const std::string& directRenderingSource();
 
 // Forgets the current program, in VTK's cache too.
 void releaseProgram(vtkOpenGLRenderWindow* window);

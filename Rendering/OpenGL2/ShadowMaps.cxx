@@ -159,7 +159,7 @@ bool ShadowMaps::draw(vtkOpenGLRenderWindow* window, const Snapshot& snapshot,
           const Part& part = snapshot.parts[p];
           glm::mat4 matrix(toClip * part.positionsToWorld());
           program->SetUniformMatrix4x4("positionToClip", &matrix[0][0]);
-          geometry.draw(part);
+          geometry.draw(p);
           this->TrianglesDrawn += part.geometry->triangleCount();
         }
       }

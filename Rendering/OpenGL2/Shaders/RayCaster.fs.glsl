@@ -4,8 +4,9 @@
 // shadow maps and shade. All positions are in view coordinates.
 uniform usampler2D hitBuffer;
 uniform usamplerBuffer trianglePart; // part number of each triangle
-uniform samplerBuffer positions;     // 3 corners a triangle
-uniform samplerBuffer normals;
+uniform usamplerBuffer indices;       // the vertices of each triangle's corners
+uniform samplerBuffer positions;     // of the vertices
+uniform samplerBuffer normals;       // of a part's vertices, or of its triangles, as the next ones
 uniform samplerBuffer colors;
 uniform samplerBuffer coordinates;
 uniform samplerBuffer lookups;
@@ -26,12 +27,16 @@ uniform vec3 rayOrigin0, rayOriginX, rayOriginY;
 uniform vec3 rayDirection0, rayDirectionX, rayDirectionY;
 out vec4 fragmentColor;
 
+//HRT::Fetch
 //HRT::Shading
 
-mat4 fetchMatrix(samplerBuffer table, int at)
+// A matrix of three rows, the fourth being (0, 0, 0, 1).
+mat4x3 fetchMatrix(samplerBuffer table, int at)
 {
-  return mat4(texelFetch(table, at), texelFetch(table, at + 1), texelFetch(table, at + 2),
-    texelFetch(table, at + 3));
+  vec4 x = texelFetch(table, at);
+  vec4 y = texelFetch(table, at + 1);
+  vec4 z = texelFetch(table, at + 2);
+  return mat4x3(x.x, y.x, z.x, x.y, y.y, z.y, x.z, y.z, z.z, x.w, y.w, z.w);
 }
 
 HrtLight fetchLight(int index)
@@ -51,27 +56,43 @@ float lightVisibility(int index, HrtLight light, vec3 p, vec3 ng, float folds)
   return hrtLightVisibility(int(t4.x), int(t4.y), light, p, ng, folds);
 }
 
-HrtSurface fetchSurface(
-  int part, ivec4 bases, ivec4 more, vec4 flags, int corner, vec2 uv, bool front)
+// A triangle, its part, and where an attribute's values at its corners lie from the start of the part.
+struct Place
 {
-  int at = part * PART_TEXELS + (front || flags.x == 1.0 ? 7 : 10);
+  int part;
+  ivec4 bases;     // first triangle, normals, colours, coordinates
+  ivec4 more;      // lookup start, width, height, first vertex
+  ivec4 ofTriangles; // whether normals, colours
+  int triangle;    // within the part
+  ivec3 vertices;  // within the part
+};
+
+ivec3 cornersOf(Place place, int base, bool ofTriangles)
+{
+  return base + (ofTriangles ? ivec3(place.triangle) : place.vertices);
+}
+
+HrtSurface fetchSurface(Place place, vec4 flags, vec2 uv, bool front)
+{
+  int at = place.part * PART_TEXELS + (front || flags.x == 1.0 ? 6 : 9);
   vec4 ambient = texelFetch(partTable, at);
   vec4 diffuse = texelFetch(partTable, at + 1);
   vec4 specular = texelFetch(partTable, at + 2);
-  if (bases.z >= 0)
+  if (place.bases.z >= 0)
   {
-    int c = bases.z * 3 + corner;
-    vec3 rgb = hrtInterpolate4(texelFetch(colors, c), texelFetch(colors, c + 1),
-      texelFetch(colors, c + 2), uv.x, uv.y).rgb;
+    ivec3 c = cornersOf(place, place.bases.z, place.ofTriangles.y == 1);
+    vec3 rgb = hrtInterpolate4(texelFetch(colors, c.x), texelFetch(colors, c.y),
+      texelFetch(colors, c.z), uv.x, uv.y).rgb;
     ambient.rgb = rgb;
     diffuse.rgb = rgb;
   }
-  else if (bases.w >= 0)
+  else if (place.bases.w >= 0)
   {
-    int c = bases.w * 3 + corner;
-    vec2 st = hrtInterpolate2(texelFetch(coordinates, c).rg, texelFetch(coordinates, c + 1).rg,
-      texelFetch(coordinates, c + 2).rg, uv.x, uv.y);
-    vec3 rgb = texelFetch(lookups, more.x + hrtLookupTexel(st, more.y, more.z)).rgb;
+    ivec3 c = cornersOf(place, place.bases.w, false);
+    vec2 st = hrtInterpolate2(texelFetch(coordinates, c.x).rg, texelFetch(coordinates, c.y).rg,
+      texelFetch(coordinates, c.z).rg, uv.x, uv.y);
+    vec3 rgb =
+      texelFetch(lookups, place.more.x + hrtLookupTexel(st, place.more.y, place.more.z)).rgb;
     ambient.rgb = rgb;
     diffuse.rgb = rgb;
   }
@@ -82,15 +103,22 @@ vec4 shadeHit(uvec4 hit)
 {
   int triangle = int(hit.x - 1u);
   int part = int(texelFetch(trianglePart, triangle).r);
-  ivec4 bases = texelFetch(partLayout, part * LAYOUT_TEXELS);    // first triangle, normals, colours, coordinates
-  ivec4 more = texelFetch(partLayout, part * LAYOUT_TEXELS + 1); // lookup start, width, height
-  vec4 flags = texelFetch(partTable, part * PART_TEXELS + 13); // scalar colours, lit, folds
-  int corner = (triangle - bases.x) * 3; // within the part
+  Place place;
+  place.part = part;
+  place.bases = texelFetch(partLayout, part * LAYOUT_TEXELS);
+  place.more = texelFetch(partLayout, part * LAYOUT_TEXELS + 1);
+  place.ofTriangles = texelFetch(partLayout, part * LAYOUT_TEXELS + 2);
+  place.triangle = triangle - place.bases.x;
+  // The last corner of a part's i-th triangle is its i-th vertex.
+  ivec3 vertices = ivec3(int(texelFetch(indices, 3 * triangle).r),
+    int(texelFetch(indices, 3 * triangle + 1).r), place.more.w + place.triangle);
+  place.vertices = vertices - place.more.w;
+  vec4 flags = texelFetch(partTable, part * PART_TEXELS + 12); // scalar colours, lit, folds
 
-  mat4 positionToView = fetchMatrix(partTable, part * PART_TEXELS);
-  vec3 a = (positionToView * texelFetch(positions, triangle * 3)).xyz;
-  vec3 b = (positionToView * texelFetch(positions, triangle * 3 + 1)).xyz;
-  vec3 c = (positionToView * texelFetch(positions, triangle * 3 + 2)).xyz;
+  mat4x3 positionToView = fetchMatrix(partTable, part * PART_TEXELS);
+  vec3 a = positionToView * vec4(fetchVector(positions, vertices.x), 1.0);
+  vec3 b = positionToView * vec4(fetchVector(positions, vertices.y), 1.0);
+  vec3 c = positionToView * vec4(fetchVector(positions, vertices.z), 1.0);
 
   vec2 ndc = gl_FragCoord.xy / viewportSize * 2.0 - 1.0;
   vec3 origin = rayOrigin0 + ndc.x * rayOriginX + ndc.y * rayOriginY;
@@ -112,14 +140,14 @@ vec4 shadeHit(uvec4 hit)
   bool front = dot(face, direction) <= 0.0;
   vec3 ng = normalize(front ? face : -face);
   vec3 n = ng;
-  if (bases.y >= 0)
+  if (place.bases.y >= 0)
   {
-    int at = bases.y * 3 + corner;
-    mat3 toView = mat3(texelFetch(partTable, part * PART_TEXELS + 4).xyz,
-      texelFetch(partTable, part * PART_TEXELS + 5).xyz,
-      texelFetch(partTable, part * PART_TEXELS + 6).xyz);
-    n = normalize(toView * hrtInterpolate3(texelFetch(normals, at).xyz,
-      texelFetch(normals, at + 1).xyz, texelFetch(normals, at + 2).xyz, uv.x, uv.y));
+    ivec3 at = cornersOf(place, place.bases.y, place.ofTriangles.x == 1);
+    mat3 toView = mat3(texelFetch(partTable, part * PART_TEXELS + 3).xyz,
+      texelFetch(partTable, part * PART_TEXELS + 4).xyz,
+      texelFetch(partTable, part * PART_TEXELS + 5).xyz);
+    n = normalize(toView * hrtInterpolate3(fetchVector(normals, at.x), fetchVector(normals, at.y),
+      fetchVector(normals, at.z), uv.x, uv.y));
     n = front ? n : -n;
   }
 
@@ -128,7 +156,7 @@ vec4 shadeHit(uvec4 hit)
     return vec4(lightVisibility(shadowLight, fetchLight(shadowLight), p, ng, flags.z));
   }
 
-  HrtSurface surface = fetchSurface(part, bases, more, flags, corner, uv, front);
+  HrtSurface surface = fetchSurface(place, flags, uv, front);
   vec3 color = hrtUnlit(surface);
   if (flags.y == 1.0 && unlitScene == 0)
   {

@@ -1,0 +1,20 @@
+//VTK::System::Dec
+// Direct rendering, vertex stage. A corner's (u, v) belong to the triangle, so no vertex can be shared:
+// every corner is drawn by itself and looks its vertex up.
+uniform usamplerBuffer indices; // the vertices of each triangle's corners
+uniform samplerBuffer positions;
+uniform mat4 positionToClip;
+flat out int triangle;
+out vec2 barycentric;
+
+//HRT::Fetch
+
+void main()
+{
+  int corner = gl_VertexID % 3;
+  triangle = gl_VertexID / 3;
+  // (u, v) of the paper's direct rendering: u grows towards the second corner, v to the third.
+  barycentric = vec2(corner == 1 ? 1.0 : 0.0, corner == 2 ? 1.0 : 0.0);
+  int vertex = int(texelFetch(indices, gl_VertexID).r);
+  gl_Position = positionToClip * vec4(fetchVector(positions, vertex), 1.0);
+}
