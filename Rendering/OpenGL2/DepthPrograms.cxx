@@ -7,6 +7,8 @@
 #include "vtkOpenGLShaderCache.h"
 #include "vtkShaderProgram.h"
 
+#include "Corners_vs.h"
+
 namespace hrt
 {
 namespace gl
@@ -15,8 +17,8 @@ namespace
 {
 
 // The samplers in the order in which the tables are bound; null: not asked for.
-const char* const kSamplers[] = { nullptr, nullptr, nullptr, nullptr, "coordinates", nullptr,
-  "partLayout", "partTable", nullptr, "texels", "floatTexels" };
+const char* const kSamplers[] = { nullptr, "indices", "positions", nullptr, nullptr, "coordinates",
+  nullptr, "partLayout", "partTable", nullptr, "texels", "floatTexels" };
 constexpr int kSamplerCount = static_cast<int>(sizeof(kSamplers) / sizeof(kSamplers[0]));
 static_assert(
   kSamplerCount == GeometryBuffers::kUnits + PartTables::kUnits + TextureBuffers::kUnits,
@@ -25,11 +27,11 @@ static_assert(
 } // namespace
 
 //------------------------------------------------------------------------------
-DepthPrograms::DepthPrograms(vtkOpenGLRenderWindow* window, const char* vertexShader,
-  const char* fragmentShader, const Tables& tables)
+DepthPrograms::DepthPrograms(
+  vtkOpenGLRenderWindow* window, const Shaders& shaders, bool corners, const Tables& tables)
   : Window(window)
-  , VertexShader(vertexShader)
-  , FragmentShader(fragmentShader)
+  , Sources(shaders)
+  , AllCorners(corners)
   , From(tables)
 {
 }
@@ -42,12 +44,19 @@ DepthPrograms::~DepthPrograms()
 }
 
 //------------------------------------------------------------------------------
-vtkShaderProgram* DepthPrograms::make(bool holes)
+vtkShaderProgram* DepthPrograms::make(Kind kind)
 {
-  vtkShaderProgram* program =
-    readyProgram(this->Window, depthSource(this->VertexShader, holes, false).c_str(),
-      depthSource(this->FragmentShader, holes, true));
-  if (program && holes)
+  if (kind == Shared)
+  {
+    return readyProgram(this->Window, this->Sources.vertex, this->Sources.fragment);
+  }
+  vtkShaderProgram* program = readyProgram(
+    this->Window, Corners_vs, depthSource(this->Sources.cornerFragment, kind == CornersWithHoles));
+  if (!program)
+  {
+    return nullptr;
+  }
+  if (!this->Units)
   {
     this->Units = std::make_unique<ScopedTextureUnits>(kSamplerCount);
     int unit = 0;
@@ -56,41 +65,72 @@ vtkShaderProgram* DepthPrograms::make(bool holes)
     this->From.parts.bindTables(unit);
     unit += PartTables::kUnits;
     this->From.textures.bindTables(unit);
-    for (int i = 0; i < kSamplerCount; ++i)
+  }
+  for (int i = 0; i < kSamplerCount; ++i)
+  {
+    if (kSamplers[i] && program->IsUniformUsed(kSamplers[i]))
     {
-      if (kSamplers[i] && program->IsUniformUsed(kSamplers[i]))
-      {
-        program->SetUniformi(kSamplers[i], i);
-      }
+      program->SetUniformi(kSamplers[i], i);
     }
   }
   return program;
 }
 
 //------------------------------------------------------------------------------
-vtkShaderProgram* DepthPrograms::use(const Snapshot& snapshot, std::size_t part)
+bool DepthPrograms::use(Kind kind)
 {
-  const bool holes = snapshot.parts[part].perforated;
-  vtkShaderProgram*& wanted = this->Programs[holes ? 1 : 0];
+  vtkShaderProgram*& wanted = this->Programs[kind];
   if (!wanted)
   {
-    wanted = this->make(holes);
-    if (!wanted)
-    {
-      return nullptr;
-    }
+    wanted = this->make(kind);
+  }
+  if (!wanted)
+  {
+    return false;
   }
   if (wanted != this->Current)
   {
     this->Window->GetShaderCache()->ReadyShaderProgram(wanted);
-    this->From.geometry.bindForDrawing(static_cast<GLuint>(wanted->GetHandle()));
+    if (kind == Shared)
+    {
+      this->From.geometry.bindForDrawing(static_cast<GLuint>(wanted->GetHandle()));
+    }
+    else
+    {
+      this->From.geometry.bindForFetching();
+    }
     this->Current = wanted;
   }
-  if (holes)
+  return true;
+}
+
+//------------------------------------------------------------------------------
+bool DepthPrograms::draw(
+  const Snapshot& snapshot, std::size_t part, const glm::dmat4& worldToClip)
+{
+  const bool holes = snapshot.parts[part].perforated;
+  const Kind kind = holes ? CornersWithHoles : this->AllCorners ? Corners : Shared;
+  if (!this->use(kind))
   {
-    wanted->SetUniformi("part", static_cast<int>(part));
+    return false;
   }
-  return wanted;
+  glm::mat4 matrix(worldToClip * snapshot.parts[part].positionsToWorld());
+  this->Current->SetUniformMatrix4x4("positionToClip", &matrix[0][0]);
+  if (kind != Shared)
+  {
+    if (holes)
+    {
+      this->Current->SetUniformi("part", static_cast<int>(part));
+    }
+    this->From.geometry.drawCorners(part);
+    return true;
+  }
+  if (this->Current->IsUniformUsed("vertexToTriangle"))
+  {
+    this->Current->SetUniformi("vertexToTriangle", this->From.geometry.vertexToTriangle(part));
+  }
+  this->From.geometry.draw(part);
+  return true;
 }
 
 } // namespace gl

@@ -1,6 +1,6 @@
-// The two programs by which a pass rasterises parts: a plain one, and one that looks textures up for
-// parts whose textures have holes. A pass draws its parts in their order and asks for each one's
-// program; where no part has holes the second is never made.
+// How a pass rasterises parts into depths and numbers: with vertices shared among triangles, or, where
+// fragments have to know a triangle's corners, each corner drawn by itself - for direct rendering, and
+// for parts whose textures have holes. What no part needs is never made.
 #pragma once
 
 #include "Rendering/OpenGL2/GeometryBuffers.h"
@@ -10,6 +10,7 @@
 
 #include "Rendering/Core/Snapshot.h"
 
+#include <array>
 #include <cstddef>
 #include <memory>
 
@@ -31,26 +32,42 @@ public:
     const PartTables& parts;
     const TextureBuffers& textures;
   };
+  // The shaders for shared vertices, and the fragment shader for single corners.
+  struct Shaders
+  {
+    const char* vertex;
+    const char* fragment;
+    const char* cornerFragment;
+  };
 
-  DepthPrograms(vtkOpenGLRenderWindow* window, const char* vertexShader,
-    const char* fragmentShader, const Tables& tables);
+  // `corners`: all parts are drawn corner by corner.
+  DepthPrograms(vtkOpenGLRenderWindow* window, const Shaders& shaders, bool corners,
+    const Tables& tables);
   ~DepthPrograms();
   DepthPrograms(const DepthPrograms&) = delete;
   DepthPrograms& operator=(const DepthPrograms&) = delete;
 
-  // Makes the part's program current, fed with the geometry's vertices. Null after an error message.
-  vtkShaderProgram* use(const Snapshot& snapshot, std::size_t part);
+  // Draws a part. False after an error message.
+  bool draw(const Snapshot& snapshot, std::size_t part, const glm::dmat4& worldToClip);
 
 private:
-  vtkShaderProgram* make(bool holes);
+  enum Kind
+  {
+    Shared,
+    Corners,
+    CornersWithHoles,
+    KindCount
+  };
+  bool use(Kind kind);
+  vtkShaderProgram* make(Kind kind);
 
   vtkOpenGLRenderWindow* Window;
-  const char* VertexShader;
-  const char* FragmentShader;
+  Shaders Sources;
+  bool AllCorners;
   Tables From;
-  vtkShaderProgram* Programs[2] = { nullptr, nullptr }; // plain, with holes
+  std::array<vtkShaderProgram*, KindCount> Programs{};
   vtkShaderProgram* Current = nullptr;
-  std::unique_ptr<ScopedTextureUnits> Units; // bound for the second program
+  std::unique_ptr<ScopedTextureUnits> Units; // of the tables, for the programs that fetch
 };
 
 } // namespace gl

@@ -2,6 +2,7 @@
 #include "Rendering/OpenGL2/GeometryBuffers.h"
 
 #include "Rendering/OpenGL2/PartTables.h"
+#include "Rendering/OpenGL2/VertexOrder.h"
 
 #include <algorithm>
 
@@ -12,103 +13,145 @@ namespace gl
 namespace
 {
 
-constexpr std::size_t kCornerBytes = sizeof(glm::vec4);
+// Values a chunk while they are brought into the order of the tables: less than 1 MiB.
+constexpr std::size_t kChunk = 1 << 16;
 
-// Triangles a chunk while their corners are gathered for upload: about 1 MiB.
-constexpr std::size_t kChunk = 1 << 14;
-
-// Uploads one texel for each corner of a geometry's triangles, in chunks rather than in a copy of
-// the whole mesh. `cornersOf(triangle)` gives three values, `texelOf` makes a texel of one. Returns
-// the bytes.
-template <class CornersOf, class TexelOf>
-std::size_t uploadCorners(TextureBuffer& table, std::size_t firstTriangle, std::size_t triangles,
-  CornersOf cornersOf, TexelOf texelOf)
+// Uploads values in chunks rather than from a copy of the whole mesh: `each(put)` calls put(value) for
+// one after the other. Returns their bytes. `first`: the place of the first one in the table.
+template <class T, class Each>
+std::size_t uploadEach(TextureBuffer& table, std::size_t first, Each each)
 {
-  using Texel = decltype(texelOf(cornersOf(0)[0]));
-  std::vector<Texel> texels;
-  for (std::size_t start = 0; start < triangles; start += kChunk)
-  {
-    texels.clear();
-    for (std::size_t i = start; i < std::min(start + kChunk, triangles); ++i)
+  std::vector<T> chunk;
+  std::size_t done = 0;
+  const auto flush = [&] {
+    table.uploadRange((first + done) * sizeof(T), chunk.data(), chunk.size() * sizeof(T));
+    done += chunk.size();
+    chunk.clear();
+  };
+  each([&](const T& value) {
+    chunk.push_back(value);
+    if (chunk.size() == kChunk)
     {
-      for (const auto& value : cornersOf(i))
-      {
-        texels.push_back(texelOf(value));
-      }
+      flush();
     }
-    table.uploadRange(
-      3 * (firstTriangle + start) * sizeof(Texel), texels.data(), texels.size() * sizeof(Texel));
+  });
+  flush();
+  return done * sizeof(T);
+}
+
+template <class T>
+std::size_t uploadAll(TextureBuffer& table, std::size_t first, const std::vector<T>& values)
+{
+  table.uploadRange(first * sizeof(T), values.data(), values.size() * sizeof(T));
+  return values.size() * sizeof(T);
+}
+
+// Values of a mesh' vertices, in the order in which these are drawn.
+template <class T>
+std::size_t uploadOrdered(TextureBuffer& table, std::size_t first, const VertexOrder& order,
+  const std::vector<T>& values)
+{
+  return uploadEach<T>(table, first, [&](auto put) {
+    for (std::size_t i = 0; i < order.size(); ++i)
+    {
+      put(values[order.vertexAt(i)]);
+    }
+  });
+}
+
+template <class T>
+std::size_t uploadAttribute(TextureBuffer& table, std::int32_t first, const VertexOrder& order,
+  const Attribute<T>& attribute)
+{
+  if (attribute.empty())
+  {
+    return 0;
   }
-  return 3 * triangles * sizeof(Texel);
+  return attribute.attachment == Attachment::Vertices
+    ? uploadOrdered(table, static_cast<std::size_t>(first), order, attribute.values)
+    : uploadAll(table, static_cast<std::size_t>(first), attribute.values);
 }
 
 } // namespace
 
 //------------------------------------------------------------------------------
+bool GeometryBuffers::Slot::samePlace(const Slot& o) const
+{
+  return this->firstTriangle == o.firstTriangle && this->triangles == o.triangles &&
+    this->firstVertex == o.firstVertex && this->vertices == o.vertices &&
+    this->normals == o.normals && this->normalsOf == o.normalsOf && this->colors == o.colors &&
+    this->colorsOf == o.colorsOf && this->coordinates == o.coordinates &&
+    this->textureCoordinates == o.textureCoordinates && this->lookup == o.lookup;
+}
+
+//------------------------------------------------------------------------------
 GeometryBuffers::GeometryBuffers(ObjectPool& pool)
   : Positions(pool, GL_RGBA32F)
-  , Normals(pool, GL_RGBA32F)
+  , Indices(pool, GL_R32UI)
+  , Normals(pool, GL_R32F)
   , Colors(pool, GL_RGBA8)
   , Coordinates(pool, GL_RG32F)
   , Lookups(pool, GL_RGBA8)
   , TrianglePart(pool, GL_R32UI)
   , Layout(pool, GL_RGBA32I)
   , VertexArray(pool.makeVertexArray())
+  , EmptyVertexArray(pool.makeVertexArray())
 {
 }
 
 //------------------------------------------------------------------------------
-std::vector<GeometryBuffers::Slot> GeometryBuffers::layOut(const Snapshot& snapshot) const
+std::vector<GeometryBuffers::Slot> GeometryBuffers::layOut(
+  const Snapshot& snapshot, Sizes& sizes) const
 {
   std::vector<Slot> slots;
-  std::int32_t normals = 0, colors = 0, coordinates = 0, lookup = 0;
+  slots.reserve(snapshot.parts.size());
   for (const Part& part : snapshot.parts)
   {
-    const Geometry& geometry = *part.geometry;
-    const auto triangles = static_cast<std::int32_t>(geometry.triangleCount());
+    const Geometry& mesh = *part.geometry;
+    const std::size_t i = slots.size();
     Slot slot;
-    slot.version = geometry.version;
+    slot.version = mesh.version;
     slot.key = part.key;
     slot.firstTriangle = part.firstTriangle;
-    slot.triangles = geometry.triangleCount();
-    if (!geometry.normals.empty())
-    {
-      slot.normals = normals;
-      normals += triangles;
-    }
-    if (geometry.colorSource == ColorSource::Corner)
-    {
-      slot.colors = colors;
-      colors += triangles;
-    }
-    if (geometry.colorSource == ColorSource::Lookup)
-    {
-      slot.coordinates = coordinates;
-      coordinates += triangles;
-      slot.lookup = lookup;
-      lookup += static_cast<std::int32_t>(geometry.lookup.size());
-    }
-    if (!geometry.textureCoordinates.empty())
-    {
-      slot.textureCoordinates = coordinates;
-      coordinates += triangles;
-    }
+    slot.triangles = mesh.triangleCount();
+    slot.vertices = i < this->Slots.size() && this->Slots[i].version == mesh.version
+      ? this->Slots[i].vertices
+      : VertexOrder::sizeFor(mesh);
+    const auto reserve = [](std::size_t& used, std::size_t count) {
+      const auto first = static_cast<std::int32_t>(used);
+      used += count;
+      return first;
+    };
+    const auto reserveAttribute = [&](std::size_t& used, const auto& attribute) {
+      return attribute.empty() ? -1
+        : reserve(used,
+            attribute.attachment == Attachment::Vertices ? slot.vertices : slot.triangles);
+    };
+    sizes.triangles += slot.triangles;
+    slot.firstVertex = reserve(sizes.vertices, slot.vertices);
+    slot.normals = reserveAttribute(sizes.normals, mesh.normals);
+    slot.normalsOf = mesh.normals.attachment;
+    slot.colors = reserveAttribute(sizes.colors, mesh.colors);
+    slot.colorsOf = mesh.colors.attachment;
+    slot.coordinates = reserveAttribute(sizes.coordinates, mesh.coordinates);
+    slot.textureCoordinates = reserveAttribute(sizes.coordinates, mesh.textureCoordinates);
+    slot.lookup = mesh.lookup.empty() ? -1 : reserve(sizes.lookups, mesh.lookup.size());
     slots.push_back(slot);
   }
   return slots;
 }
 
 //------------------------------------------------------------------------------
-bool GeometryBuffers::fits(const Snapshot& snapshot, std::string& error) const
+bool GeometryBuffers::fits(const Sizes& sizes, std::string& error) const
 {
   GLint limit = 0;
   glGetIntegerv(GL_MAX_TEXTURE_BUFFER_SIZE, &limit);
-  const std::uint64_t corners = 3ull * snapshot.triangleCount;
-  if (corners > static_cast<std::uint64_t>(limit))
+  const auto most = static_cast<std::size_t>(limit) / 3;
+  if (sizes.triangles > most || sizes.vertices > most)
   {
-    error = "the scene has " + std::to_string(snapshot.triangleCount) +
-      " triangles, this OpenGL context holds at most " + std::to_string(limit / 3) +
-      " in a texture buffer";
+    error = "the scene has " + std::to_string(sizes.triangles) + " triangles and draws " +
+      std::to_string(sizes.vertices) + " vertices, this OpenGL context holds at most " +
+      std::to_string(most) + " of either in a texture buffer";
     return false;
   }
   return true;
@@ -141,18 +184,20 @@ bool GeometryBuffers::update(const Snapshot& snapshot, std::string& error)
   {
     return true;
   }
-  if (!this->fits(snapshot, error))
+  Sizes sizes;
+  const std::vector<Slot> slots = this->layOut(snapshot, sizes);
+  if (!this->fits(sizes, error))
   {
     this->Uploaded = false;
     return false;
   }
-  const std::vector<Slot> slots = this->layOut(snapshot);
   const bool sameStorage = this->Uploaded && slots.size() == this->Slots.size() &&
     std::equal(slots.begin(), slots.end(), this->Slots.begin(),
       [](const Slot& a, const Slot& b) { return a.samePlace(b); });
   if (!sameStorage)
   {
-    this->allocate(snapshot);
+    this->allocate(sizes);
+    this->uploadOwners(snapshot);
   }
   for (std::size_t i = 0; i < slots.size(); ++i)
   {
@@ -168,78 +213,82 @@ bool GeometryBuffers::update(const Snapshot& snapshot, std::string& error)
 }
 
 //------------------------------------------------------------------------------
-void GeometryBuffers::allocate(const Snapshot& snapshot)
+void GeometryBuffers::allocate(const Sizes& sizes)
 {
-  std::size_t normals = 0, colors = 0, coordinates = 0, lookups = 0;
-  for (const Part& part : snapshot.parts)
-  {
-    const Geometry& geometry = *part.geometry;
-    normals += geometry.normals.empty() ? 0 : 3 * geometry.triangleCount();
-    colors += geometry.colors.empty() ? 0 : 3 * geometry.triangleCount();
-    coordinates += geometry.coordinates.empty() ? 0 : 3 * geometry.triangleCount();
-    coordinates += geometry.textureCoordinates.empty() ? 0 : 3 * geometry.triangleCount();
-    lookups += geometry.lookup.size();
-  }
   // Bytes without data: only the storage is made; every part is uploaded into it afterwards.
   const auto reserve = [](TextureBuffer& table, std::size_t bytes) {
     table.upload(nullptr, bytes, GL_STATIC_DRAW);
   };
-  reserve(this->Positions, 3 * kCornerBytes * snapshot.triangleCount);
-  reserve(this->Normals, kCornerBytes * normals);
-  reserve(this->Colors, sizeof(glm::u8vec4) * colors);
-  reserve(this->Coordinates, sizeof(glm::vec2) * coordinates);
-  reserve(this->Lookups, sizeof(glm::u8vec4) * lookups);
+  reserve(this->Positions, sizeof(glm::vec4) * sizes.vertices);
+  reserve(this->Indices, 3 * sizeof(std::uint32_t) * sizes.triangles);
+  reserve(this->Normals, sizeof(glm::vec3) * sizes.normals);
+  reserve(this->Colors, sizeof(glm::u8vec4) * sizes.colors);
+  reserve(this->Coordinates, sizeof(glm::vec2) * sizes.coordinates);
+  reserve(this->Lookups, sizeof(glm::u8vec4) * sizes.lookups);
+  reserve(this->TrianglePart, sizeof(std::uint32_t) * sizes.triangles);
 }
 
 //------------------------------------------------------------------------------
 void GeometryBuffers::uploadPart(const Part& part, const Slot& slot)
 {
-  const Geometry& geometry = *part.geometry;
-  const std::size_t triangles = geometry.triangleCount();
-  // Three components would need OpenGL 4.0, so a fourth is added.
-  this->UploadedBytes += uploadCorners(this->Positions, slot.firstTriangle, triangles,
-    [&](std::size_t i) { return geometry.cornerPositions(i); },
-    [](const glm::vec3& position) { return glm::vec4(position, 1.0f); });
-  const auto put = [&](TextureBuffer& table, std::int32_t first, const auto& attribute, auto texelOf) {
-    if (!attribute.empty())
+  const Geometry& mesh = *part.geometry;
+  const VertexOrder order(mesh);
+  const auto first = static_cast<std::uint32_t>(slot.firstVertex);
+  this->UploadedBytes += uploadEach<glm::vec4>(this->Positions, first, [&](auto put) {
+    for (std::size_t i = 0; i < order.size(); ++i)
     {
-      this->UploadedBytes += uploadCorners(table, static_cast<std::size_t>(first), triangles,
-        [&](std::size_t i) { return geometry.cornersOf(attribute, i); }, texelOf);
+      put(glm::vec4(mesh.positions[order.vertexAt(i)], 1.0f));
     }
-  };
-  const auto asItIs = [](const auto& value) { return value; };
-  put(this->Normals, slot.normals, geometry.normals,
-    [](const glm::vec3& normal) { return glm::vec4(normal, 0.0f); });
-  put(this->Colors, slot.colors, geometry.colors, asItIs);
-  put(this->Coordinates, slot.coordinates, geometry.coordinates, asItIs);
-  put(this->Coordinates, slot.textureCoordinates, geometry.textureCoordinates, asItIs);
-  if (!geometry.lookup.empty())
+  });
+  using Corners = std::array<std::uint32_t, 3>;
+  this->UploadedBytes += uploadEach<Corners>(this->Indices, slot.firstTriangle, [&](auto put) {
+    order.forEachTriangle(
+      [&](const Corners& c) { put({ first + c[0], first + c[1], first + c[2] }); });
+  });
+  this->UploadedBytes += uploadAttribute(this->Normals, slot.normals, order, mesh.normals);
+  this->UploadedBytes += uploadAttribute(this->Colors, slot.colors, order, mesh.colors);
+  this->UploadedBytes +=
+    uploadAttribute(this->Coordinates, slot.coordinates, order, mesh.coordinates);
+  this->UploadedBytes += uploadAttribute(
+    this->Coordinates, slot.textureCoordinates, order, mesh.textureCoordinates);
+  if (!mesh.lookup.empty())
   {
-    const std::size_t bytes = geometry.lookup.size() * sizeof(geometry.lookup[0]);
-    this->Lookups.uploadRange(
-      static_cast<std::size_t>(slot.lookup) * sizeof(geometry.lookup[0]), geometry.lookup.data(), bytes);
-    this->UploadedBytes += bytes;
+    this->UploadedBytes +=
+      uploadAll(this->Lookups, static_cast<std::size_t>(slot.lookup), mesh.lookup);
   }
+}
+
+//------------------------------------------------------------------------------
+void GeometryBuffers::uploadOwners(const Snapshot& snapshot)
+{
+  this->UploadedBytes += uploadEach<std::uint32_t>(this->TrianglePart, 0, [&](auto put) {
+    for (std::uint32_t i = 0; i < snapshot.parts.size(); ++i)
+    {
+      for (std::size_t k = snapshot.parts[i].geometry->triangleCount(); k > 0; --k)
+      {
+        put(i);
+      }
+    }
+  });
 }
 
 //------------------------------------------------------------------------------
 void GeometryBuffers::uploadLayout(const Snapshot& snapshot)
 {
-  std::vector<std::uint32_t> owner(snapshot.triangleCount);
   std::vector<glm::ivec4> layout;
   for (std::size_t i = 0; i < snapshot.parts.size(); ++i)
   {
-    const Part& part = snapshot.parts[i];
     const Slot& slot = this->Slots[i];
-    std::fill_n(owner.begin() + part.firstTriangle, slot.triangles, static_cast<std::uint32_t>(i));
+    const Geometry& mesh = *snapshot.parts[i].geometry;
     layout.emplace_back(
-      static_cast<int>(part.firstTriangle), slot.normals, slot.colors, slot.coordinates);
-    layout.emplace_back(std::max(slot.lookup, 0), part.geometry->lookupWidth,
-      part.geometry->lookupHeight, slot.textureCoordinates);
+      static_cast<int>(slot.firstTriangle), slot.normals, slot.colors, slot.coordinates);
+    layout.emplace_back(
+      std::max(slot.lookup, 0), mesh.lookupWidth, mesh.lookupHeight, slot.firstVertex);
+    layout.emplace_back(slot.normalsOf == Attachment::Triangles ? 1 : 0,
+      slot.colorsOf == Attachment::Triangles ? 1 : 0, slot.textureCoordinates, 0);
   }
-  this->TrianglePart.upload(owner.data(), owner.size() * sizeof(owner[0]), GL_STATIC_DRAW);
   this->Layout.upload(layout.data(), layout.size() * sizeof(layout[0]), GL_STATIC_DRAW);
-  this->UploadedBytes += owner.size() * sizeof(owner[0]) + layout.size() * sizeof(layout[0]);
+  this->UploadedBytes += layout.size() * sizeof(layout[0]);
 }
 
 //------------------------------------------------------------------------------
@@ -247,6 +296,7 @@ void GeometryBuffers::bindForDrawing(GLuint program) const
 {
   const GLint position = glGetAttribLocation(program, "position");
   glBindVertexArray(this->VertexArray);
+  glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, this->Indices.buffer());
   glBindBuffer(GL_ARRAY_BUFFER, this->Positions.buffer());
   glEnableVertexAttribArray(static_cast<GLuint>(position));
   glVertexAttribPointer(static_cast<GLuint>(position), 4, GL_FLOAT, GL_FALSE, 0, nullptr);
@@ -254,17 +304,40 @@ void GeometryBuffers::bindForDrawing(GLuint program) const
 }
 
 //------------------------------------------------------------------------------
-void GeometryBuffers::draw(const Part& part) const
+void GeometryBuffers::draw(std::size_t part) const
 {
-  glDrawArrays(GL_TRIANGLES, static_cast<GLint>(3 * part.firstTriangle),
-    static_cast<GLsizei>(3 * part.geometry->triangleCount()));
+  const Slot& slot = this->Slots[part];
+  const std::size_t offset = 3 * sizeof(std::uint32_t) * slot.firstTriangle;
+  glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(3 * slot.triangles), GL_UNSIGNED_INT,
+    reinterpret_cast<const void*>(offset));
+}
+
+//------------------------------------------------------------------------------
+int GeometryBuffers::vertexToTriangle(std::size_t part) const
+{
+  const Slot& slot = this->Slots[part];
+  return static_cast<int>(slot.firstTriangle) - slot.firstVertex;
+}
+
+//------------------------------------------------------------------------------
+void GeometryBuffers::bindForFetching() const
+{
+  glBindVertexArray(this->EmptyVertexArray);
+}
+
+//------------------------------------------------------------------------------
+void GeometryBuffers::drawCorners(std::size_t part) const
+{
+  const Slot& slot = this->Slots[part];
+  glDrawArrays(GL_TRIANGLES, static_cast<GLint>(3 * slot.firstTriangle),
+    static_cast<GLsizei>(3 * slot.triangles));
 }
 
 //------------------------------------------------------------------------------
 void GeometryBuffers::bindTables(int firstUnit) const
 {
-  const TextureBuffer* tables[kUnits] = { &this->TrianglePart, &this->Positions, &this->Normals,
-    &this->Colors, &this->Coordinates, &this->Lookups, &this->Layout };
+  const TextureBuffer* tables[kUnits] = { &this->TrianglePart, &this->Indices, &this->Positions,
+    &this->Normals, &this->Colors, &this->Coordinates, &this->Lookups, &this->Layout };
   for (int i = 0; i < kUnits; ++i)
   {
     tables[i]->bind(firstUnit + i);

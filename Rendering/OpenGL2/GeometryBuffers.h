@@ -1,7 +1,8 @@
-// The scene's triangles on the GPU, once, for all passes: the vertex buffer that the object
-// intersection buffer and the shadow maps rasterise is the same memory as the texture buffer the
-// ray caster fetches corners from. Triangles lie in the snapshot's order, so a triangle's number is
-// its place. Depends on geometry only: matrices and materials are in PartTables.
+// The scene's triangles on the GPU, once, for all passes: the vertex buffer that the item buffer and
+// the shadow maps draw from is the same memory as the texture buffer that direct rendering and the ray
+// caster fetch from, and so are the indices. Triangles lie in the snapshot's order, so a triangle's
+// number is its place; the vertices of a part lie in the order of VertexOrder.h. Depends on geometry
+// only: matrices and materials are in PartTables.
 #pragma once
 
 #include "Rendering/OpenGL2/ObjectPool.h"
@@ -30,46 +31,56 @@ public:
   // True when the buffers hold exactly this snapshot's triangles.
   bool holds(const Snapshot& snapshot) const;
 
-  // Feeds the program's attribute `position`; draw() then rasterises the triangles of one part.
+  // Feeds the program's attribute `position`; draw() then rasterises the triangles of one part, of
+  // which a last corner's gl_VertexID is vertexToTriangle() less than the triangle's number.
   void bindForDrawing(GLuint program) const;
-  void draw(const Part& part) const;
+  void draw(std::size_t part) const;
+  int vertexToTriangle(std::size_t part) const;
+
+  // The same without shared vertices, for a program that fetches them by itself from the tables.
+  void bindForFetching() const;
+  void drawCorners(std::size_t part) const;
 
   // Binds the tables from the given unit on, in the order of the RayCaster's samplers; returns the
   // number of units used.
-  static constexpr int kUnits = 7;
+  static constexpr int kUnits = 8;
   void bindTables(int firstUnit) const;
 
   std::uint64_t uploadedBytes() const { return this->UploadedBytes; }
 
 private:
-  // Where a part's optional attributes lie, in triangles from the start of each table; -1: none.
+  // Where a part lies in each table. An attribute's place is counted in what it is attached to,
+  // vertices or triangles; -1: the part lacks it.
   struct Slot
   {
     std::uint64_t version = 0;
     std::uint64_t key = 0;
     TriangleId firstTriangle = 0;
     std::size_t triangles = 0;
+    std::int32_t firstVertex = 0;
+    std::size_t vertices = 0;
     std::int32_t normals = -1, colors = -1, coordinates = -1, lookup = -1;
     std::int32_t textureCoordinates = -1; // in the table of coordinates too
+    Attachment normalsOf = Attachment::Vertices, colorsOf = Attachment::Vertices;
 
-    bool samePlace(const Slot& o) const
-    {
-      return this->firstTriangle == o.firstTriangle && this->triangles == o.triangles &&
-        this->normals == o.normals && this->colors == o.colors &&
-        this->coordinates == o.coordinates && this->lookup == o.lookup &&
-        this->textureCoordinates == o.textureCoordinates;
-    }
+    bool samePlace(const Slot& o) const;
+  };
+  // How much of each table is in use.
+  struct Sizes
+  {
+    std::size_t triangles = 0, vertices = 0, normals = 0, colors = 0, coordinates = 0, lookups = 0;
   };
 
-  std::vector<Slot> layOut(const Snapshot& snapshot) const;
-  bool fits(const Snapshot& snapshot, std::string& error) const;
-  void allocate(const Snapshot& snapshot);
+  std::vector<Slot> layOut(const Snapshot& snapshot, Sizes& sizes) const;
+  bool fits(const Sizes& sizes, std::string& error) const;
+  void allocate(const Sizes& sizes);
   void uploadPart(const Part& part, const Slot& slot);
+  void uploadOwners(const Snapshot& snapshot);
   void uploadLayout(const Snapshot& snapshot);
 
-  TextureBuffer Positions, Normals, Colors, Coordinates, Lookups;
+  TextureBuffer Positions, Indices, Normals, Colors, Coordinates, Lookups;
   TextureBuffer TrianglePart, Layout;
-  GLuint VertexArray;
+  GLuint VertexArray, EmptyVertexArray;
   std::vector<Slot> Slots;
   bool Uploaded = false;
   std::uint64_t UploadedBytes = 0; // in the last update

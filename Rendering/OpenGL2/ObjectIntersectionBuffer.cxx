@@ -7,8 +7,9 @@
 #include "vtkOpenGLState.h"
 #include "vtkShaderProgram.h"
 
-#include "ObjectIntersectionBuffer_fs.h"
-#include "ObjectIntersectionBuffer_vs.h"
+#include "DirectRendering_fs.h"
+#include "ItemBuffer_fs.h"
+#include "ItemBuffer_vs.h"
 
 #include <cstddef>
 #include <vector>
@@ -19,6 +20,24 @@ namespace gl
 {
 namespace
 {
+
+// A triangle has the flat outputs of its last vertex for the time this lives: OpenGL's default, which
+// a host may have changed.
+class ScopedLastVertexConvention
+{
+public:
+  ScopedLastVertexConvention()
+  {
+    glGetIntegerv(GL_PROVOKING_VERTEX, &this->Before);
+    glProvokingVertex(GL_LAST_VERTEX_CONVENTION);
+  }
+  ~ScopedLastVertexConvention() { glProvokingVertex(static_cast<GLenum>(this->Before)); }
+  ScopedLastVertexConvention(const ScopedLastVertexConvention&) = delete;
+  ScopedLastVertexConvention& operator=(const ScopedLastVertexConvention&) = delete;
+
+private:
+  GLint Before = 0;
+};
 
 // As VTK's property does it; both flags together hide everything.
 void setCulling(vtkOpenGLState* state, const Material& material)
@@ -70,8 +89,9 @@ bool ObjectIntersectionBuffer::draw(vtkOpenGLRenderWindow* window, const Snapsho
   {
     return false;
   }
+  const bool direct = this->Mode == Visibility::DirectRendering;
   DepthPrograms programs(
-    window, ObjectIntersectionBuffer_vs, ObjectIntersectionBuffer_fs, tables);
+    window, { ItemBuffer_vs, ItemBuffer_fs, DirectRendering_fs }, direct, tables);
   const GLuint noHit[4] = { 0, 0, 0, 0 };
   const GLfloat far = this->Convention.clearDepth();
   target.beginDepthPass(this->Convention);
@@ -80,31 +100,21 @@ bool ObjectIntersectionBuffer::draw(vtkOpenGLRenderWindow* window, const Snapsho
   glClearBufferfv(GL_DEPTH, 0, &far);
 
   ScopedDepthConvention depth(this->Convention);
+  const ScopedLastVertexConvention provoking;
   const glm::dmat4 toClip = this->Convention.drawMatrix(snapshot.camera.viewToClip) *
     snapshot.camera.worldToView;
-  vtkShaderProgram* current = nullptr;
   for (std::size_t i = 0; i < parts.size(); ++i)
   {
     if (!parts[i])
     {
       continue;
     }
-    vtkShaderProgram* program = programs.use(snapshot, i);
-    if (!program)
+    setCulling(window->GetState(), snapshot.parts[i].material);
+    if (!programs.draw(snapshot, i, toClip))
     {
       return false;
     }
-    const Part& part = snapshot.parts[i];
-    if (program != current)
-    {
-      program->SetUniformi("directRendering", this->Mode == Visibility::DirectRendering ? 1 : 0);
-      current = program;
-    }
-    setCulling(window->GetState(), part.material);
-    glm::mat4 matrix(toClip * part.positionsToWorld());
-    program->SetUniformMatrix4x4("positionToClip", &matrix[0][0]);
-    tables.geometry.draw(part);
-    this->TrianglesDrawn += part.geometry->triangleCount();
+    this->TrianglesDrawn += snapshot.parts[i].geometry->triangleCount();
   }
   return true;
 }

@@ -35,9 +35,11 @@ void appendPart(std::vector<glm::vec4>& table, const Part& part, const glm::dmat
 {
   const glm::dmat4 toView = worldToView * part.positionsToWorld();
   const glm::dmat3 normals = glm::inverseTranspose(glm::dmat3(toView));
-  for (int column = 0; column < 4; ++column)
+  // The last row is that of every affine matrix.
+  const glm::dmat4 rows = glm::transpose(toView);
+  for (int row = 0; row < 3; ++row)
   {
-    table.emplace_back(glm::vec4(toView[column]));
+    table.emplace_back(rows[row]);
   }
   // A common factor does not change a direction; without it the matrix of a part that is scaled far
   // from unit size could leave the range of float.

@@ -16,17 +16,18 @@ namespace gl
 {
 
 // Layout of the tables; the same names are handed to the shaders as #defines.
-//   part:   0-3 positions to view coordinates, 4-6 normals to view coordinates,
-//           7-9 front: (ambient colour, ambient) (diffuse colour, diffuse) (specular, power),
-//           10-12 back: the same, 13 (lit, folds, textures on the back, textures transformed),
-//           14-16 rows x, y, w of the texture transform with (place of the textures' descriptions in
+//   part:   0-2 rows of the matrix from positions to view coordinates, 3-5 normals to view coordinates,
+//           6-8 front: (ambient colour, ambient) (diffuse colour, diffuse) (specular, power),
+//           9-11 back: the same, 12 (lit, folds, textures on the back, textures transformed),
+//           13-15 rows x, y, w of the texture transform with (place of the textures' descriptions in
 //           this table, their number, 0); the descriptions follow all parts: see TextureBuffers.h
 //   layout: (first triangle, normals, colours, coordinates)
-//           (lookup start, width, height, texture coordinates)
+//           (lookup start, width, height, first vertex)
+//           (normals of triangles, colours of triangles, texture coordinates, 0)
 //   light:  (position, kind) (direction, cosine of the cone) (colour, exponent)
 //           (attenuation, 0) (first shadow face, number of faces, 0, 0)
-inline constexpr int kPartTexels = 17;
-inline constexpr int kLayoutTexels = 2;
+inline constexpr int kPartTexels = 16;
+inline constexpr int kLayoutTexels = 3;
 inline constexpr int kLightTexels = 5;
 
 class PartTables

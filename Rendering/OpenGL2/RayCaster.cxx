@@ -20,9 +20,9 @@ namespace
 {
 
 // The samplers in the order in which the tables are bound.
-const char* const kSamplers[] = { "hitBuffer", "trianglePart", "positions", "normals", "colors",
-  "coordinates", "lookups", "partLayout", "partTable", "lightTable", "shadowFaces", "shadowAtlas",
-  "texels", "floatTexels" };
+const char* const kSamplers[] = { "hitBuffer", "trianglePart", "indices", "positions", "normals",
+  "colors", "coordinates", "lookups", "partLayout", "partTable", "lightTable", "shadowFaces",
+  "shadowAtlas", "texels", "floatTexels" };
 constexpr int kSamplerCount = static_cast<int>(sizeof(kSamplers) / sizeof(kSamplers[0]));
 static_assert(kSamplerCount ==
     1 + GeometryBuffers::kUnits + PartTables::kUnits + ShadowMaps::kUnits + TextureBuffers::kUnits,

@@ -26,6 +26,15 @@ namespace gl
 namespace
 {
 
+// Texels of three components would need OpenGL 4.0, and four would waste a quarter of the memory.
+const char* const kFetchVector = R"(
+vec3 fetchVector(samplerBuffer table, int i)
+{
+  return vec3(texelFetch(table, 3 * i).r, texelFetch(table, 3 * i + 1).r,
+    texelFetch(table, 3 * i + 2).r);
+}
+)";
+
 std::string definitions(const SurfaceFeatures& features)
 {
   std::ostringstream text;
@@ -54,15 +63,17 @@ std::string definitions(const SurfaceFeatures& features)
 
 //------------------------------------------------------------------------------
 vtkShaderProgram* readyProgram(
-  vtkOpenGLRenderWindow* window, const char* vertexShader, const std::string& fragmentShader)
+  vtkOpenGLRenderWindow* window, const std::string& vertexShader, const std::string& fragmentShader)
 {
-  return window->GetShaderCache()->ReadyShaderProgram(vertexShader, fragmentShader.c_str(), "");
+  return window->GetShaderCache()->ReadyShaderProgram(
+    vertexShader.c_str(), fragmentShader.c_str(), "");
 }
 
 //------------------------------------------------------------------------------
 std::string rayCasterSource(const SurfaceFeatures& features)
 {
   std::string text = RayCaster_fs;
+  vtkShaderProgram::Substitute(text, "//HRT::Fetch", kFetchVector);
   vtkShaderProgram::Substitute(
     text, "//HRT::Shading", definitions(features) + Shading + Surface + ShadowLookup);
   vtkShaderProgram::Substitute(text, "//HRT::SurfaceColors", SurfaceColors);
@@ -72,13 +83,13 @@ std::string rayCasterSource(const SurfaceFeatures& features)
 }
 
 //------------------------------------------------------------------------------
-std::string depthSource(const char* text, bool holes, bool fragment)
+std::string depthSource(const char* text, bool holes)
 {
   std::string result = text;
-  std::string code = holes ? "#define HRT_HOLES\n" : "";
-  if (holes && fragment)
+  std::string code;
+  if (holes)
   {
-    code += definitions({}) + Shading + Surface + Holes;
+    code = "#define HRT_HOLES\n" + definitions({}) + Shading + Surface + Holes;
     vtkShaderProgram::Substitute(
       code, "//HRT::Textures", std::string(TextureFetch) + TextureLookup);
   }

@@ -17,15 +17,14 @@ namespace gl
 
 // Null after an error message when a shader does not compile.
 vtkShaderProgram* readyProgram(
-  vtkOpenGLRenderWindow* window, const char* vertexShader, const std::string& fragmentShader);
+  vtkOpenGLRenderWindow* window, const std::string& vertexShader, const std::string& fragmentShader);
 
 // The ray caster's fragment shader with the shared shading source and the layouts filled in. What no
 // surface in view has is not in it: a scene does not pay for the features of others.
 std::string rayCasterSource(const SurfaceFeatures& features);
 
-// A shader that rasterises parts: as it is, or made to leave out the holes of their textures. In a vertex
-// shader `fragment` is false.
-std::string depthSource(const char* text, bool holes, bool fragment);
+// A fragment shader that rasterises parts: as it is, or made to leave out the holes of their textures.
+std::string depthSource(const char* text, bool holes);
 
 // Forgets the current program, in VTK's cache too.
 void releaseProgram(vtkOpenGLRenderWindow* window);

@@ -124,7 +124,8 @@ bool ShadowMaps::draw(vtkOpenGLRenderWindow* window, const Snapshot& snapshot,
   {
     return false;
   }
-  DepthPrograms programs(window, ShadowMap_vs, ShadowMap_fs, tables);
+  DepthPrograms programs(
+    window, { ShadowMap_vs, ShadowMap_fs, ShadowMap_fs }, false, tables);
   target.beginDepthPass(this->Convention);
   ScopedDepthConvention depth(this->Convention);
   const GLfloat clear = this->Convention.clearDepth();
@@ -150,16 +151,11 @@ bool ShadowMaps::draw(vtkOpenGLRenderWindow* window, const Snapshot& snapshot,
       {
         if (casters[p])
         {
-          vtkShaderProgram* program = programs.use(snapshot, p);
-          if (!program)
+          if (!programs.draw(snapshot, p, toClip))
           {
             return false;
           }
-          const Part& part = snapshot.parts[p];
-          glm::mat4 matrix(toClip * part.positionsToWorld());
-          program->SetUniformMatrix4x4("positionToClip", &matrix[0][0]);
-          tables.geometry.draw(part);
-          this->TrianglesDrawn += part.geometry->triangleCount();
+          this->TrianglesDrawn += snapshot.parts[p].geometry->triangleCount();
         }
       }
     }

@@ -1,11 +1,13 @@
 """What a frame costs: the hybrid pass beside VTK's own renderer, frame by frame in turn in one window, so
-that a noisy machine disturbs both alike. Prints medians with quartiles and the ratio; writes JSON. Then
-interleaved rendering, time against error (interleaving.py), what a step of the robots' animation costs the
-ray structures (updates.py), and the core by itself, where hrtCoreBenchmark was built: the kd-tree's build
-and rays beside Embree's.
+that a noisy machine disturbs both alike. Prints medians with quartiles and the ratio; writes JSON. Then ten
+thousand actors that VTK draws (hosted.py), the memory of a million triangles (memory.py), a million glyphs
+(glyphs.py), interleaved rendering, time against error (interleaving.py), what a step of the robots' animation
+costs the ray structures (updates.py), and the core by itself, where hrtCoreBenchmark was built: the kd-tree's
+build and rays beside Embree's.
 
     ./run bench [--quick] [--frames N] [--json FILE] [--no-core]
-    ./run bench --paper [...]     the paper's tables and figure, see paper.py
+    ./run bench --compare BUILD [...]   this build against another one, see compare.py
+    ./run bench --paper [...]           the paper's tables and figure, see paper.py
 
 Each case says what changes between its frames. Times are wall-clock milliseconds of a whole
 vtkRenderWindow.Render with the GL commands finished, 800 x 600, no multisampling.
@@ -18,56 +20,30 @@ import pathlib
 import statistics as st
 import subprocess
 import sys
-import time
 
+import cases
+import glyphs
+import hosted
 import interleaving
+import memory
 import updates
-from measure import SIZE, WARM_UP, device_of, header, model_on_floor, models, timed, window_of
-from vtkhybrid import __version__, statistics, vtkHybridRayTracingPass
+from measure import SIZE, WARM_UP, device_of, header, models, timed
+from vtkhybrid import __version__, statistics
 from vtkmodules.vtkCommonCore import vtkVersion
 
 
-def move_camera(renderer, _light, i):
-    renderer.GetActiveCamera().Azimuth(1.0 if i % 20 < 10 else -1.0)
-
-
-def move_light(_renderer, light, i):
-    light.SetPosition(1 + 0.02 * (i % 10), 3, 2)
-
-
-def move_nothing(_renderer, _light, _i):
-    pass
-
-
-# name, what it shows, scene keywords, pass settings, what changes from frame to frame
-CASES = [
-    ("no effects", "camera moves", {}, {"ShadowMode": 0}, move_camera),
-    ("one shadow map", "camera moves", {}, {}, move_camera),
-    ("one shadow map, direct", "camera moves", {}, {"Visibility": 1}, move_camera),
-    ("one shadow map", "light moves", {}, {}, move_light),
-    ("one shadow map", "still", {}, {}, move_nothing),
-    ("mirror floor", "camera moves", {"mirror": True}, {}, move_camera),
-    ("mirror floor", "still", {"mirror": True}, {}, move_nothing),
-    ("glass model, mirror floor", "camera moves", {"mirror": True, "glass": True}, {}, move_camera),
-]
-
-
 def run(model, keywords, settings, move, frames):
-    renderer, light = model_on_floor(model, **keywords)
-    window = window_of(renderer)
-    rt = vtkHybridRayTracingPass()
-    for name, value in settings.items():
-        getattr(rt, "Set" + name)(value)
+    stage = cases.on_floor(model, keywords, settings, move)
     vtk, hybrid = [], []
     for i in range(WARM_UP + frames):
-        move(renderer, light, i)
-        renderer.SetPass(None)
-        vtk.append(timed(window))
-        renderer.SetPass(rt)
-        hybrid.append(timed(window))
-    counters = statistics(rt)
-    device = device_of(window)
-    window.Finalize()
+        stage.advance(i)
+        stage.renderer.SetPass(None)
+        vtk.append(timed(stage.window))
+        stage.renderer.SetPass(stage.rt)
+        hybrid.append(timed(stage.window))
+    counters = statistics(stage.rt)
+    device = device_of(stage.window)
+    stage.close()
     vtk, hybrid = vtk[WARM_UP:], hybrid[WARM_UP:]
     return {
         "vtk_ms": st.quantiles(vtk, n=4),
@@ -95,6 +71,10 @@ def main():
         import paper
 
         return paper.main([a for a in sys.argv[1:] if a != "--paper"])
+    if any(a.split("=")[0] == "--compare" for a in sys.argv[1:]):
+        import compare
+
+        return compare.main(sys.argv[1:])
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--quick", action="store_true", help="few frames, for a first impression")
     parser.add_argument("--frames", type=int, help="frames a case after warm-up (default 25)")
@@ -108,7 +88,7 @@ def main():
     print(f"{'scene':7s} {'case':26s} {'changes':13s} {'VTK ms':>8s} {'hybrid ms':>22s} {'ratio':>19s}")
     results = []
     for name, model in models():
-        for case, changes, keywords, settings, move in CASES:
+        for case, changes, keywords, settings, move in cases.CASES:
             figures = run(model, keywords, settings, move, frames)
             results.append({"scene": name, "case": case, "changes": changes, **figures})
             low, middle, high = figures["hybrid_ms"]
@@ -117,11 +97,14 @@ def main():
                   f" {middle:8.1f} [{low:5.1f}, {high:5.1f}] {r1:6.2f} [{r0:4.2f}, {r2:4.2f}]",
                   flush=True)
     print("OpenGL:", results[0]["device"])
+    crowds = hosted.run(min(frames, hosted.MOST_FRAMES))
+    taken = memory.run(1 if arguments.quick else 3)
+    glyph_rows = glyphs.run(arguments.quick)
     interleaved = interleaving.run(frames)
     updated = updates.run()
     if arguments.json:
-        figures = {**header(frames), "results": results, "interleaving": interleaved,
-                   "structure_updates": updated}
+        figures = {**header(), "frames": frames, "results": results, "hosted": crowds, "memory": taken,
+                   "glyphs": glyph_rows, "interleaving": interleaved, "structure_updates": updated}
         pathlib.Path(arguments.json).write_text(
             json.dumps(figures, indent=1) + "\n", encoding="utf-8")
     if not arguments.no_core:

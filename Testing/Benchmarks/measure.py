@@ -60,10 +60,10 @@ def device_of(window):
          if "renderer string" in s), "unknown")
 
 
-def header(frames):
+def header():
     """What a file of results says about its machine."""
     return {"vtkhybrid": __version__, "vtk": vtkVersion.GetVTKVersion(), "size": SIZE,
-            "cores": os.cpu_count(), "machine": platform.machine(), "frames": frames}
+            "cores": os.cpu_count(), "machine": platform.machine()}
 
 
 def models():
@@ -75,3 +75,13 @@ def models():
         yield "bunny", scenes.bunny(str(path))
     else:
         print("bunny: skipped, no scene data (see Data/README.md)")
+
+
+def robots_file():
+    """Where the robots are; None, and a word about it, where they are not."""
+    root = os.environ.get("HRT_DATA_ROOT")
+    path = pathlib.Path(root, "bart/robots/aff/Robot.aff") if root else None
+    if path and path.is_file():
+        return str(path)
+    print("robots: skipped, no scene data (see Data/README.md)")
+    return None

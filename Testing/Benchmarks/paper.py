@@ -15,8 +15,9 @@ import os
 import pathlib
 import statistics as st
 
-from measure import WARM_UP, device_of, header, model_on_floor, models, timed, window_of
-from vtkhybrid import vtkHybridBARTImporter, vtkHybridRayTracingPass
+from cases import parade, pass_of
+from measure import (
+    WARM_UP, device_of, header, model_on_floor, models, robots_file, timed, window_of)
 from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkChartsCore import vtkChart, vtkChartLegend, vtkChartXY
 from vtkmodules.vtkCommonCore import vtkFloatArray, vtkObject
@@ -118,13 +119,6 @@ ENGINES = [
 ]
 
 
-def pass_of(settings):
-    rt = vtkHybridRayTracingPass()
-    for name, value in settings.items():
-        getattr(rt, "Set" + name)(value)
-    return rt
-
-
 class Model:
     """Torus or bunny on a floor, a mirror for the tracers; the camera circles."""
 
@@ -140,15 +134,7 @@ class Robots:
     """The parade, without its textures and with one of its lights. `frames` are spread over all of it."""
 
     def __init__(self, path, frames):
-        self.importer = vtkHybridBARTImporter()
-        self.importer.SetFileName(path)
-        self.importer.SetTextures(False)
-        if not self.importer.Read():
-            raise SystemExit(1)  # the importer has said why
-        self.renderer = vtkRenderer()
-        self.importer.AddTo(self.renderer)
-        for light in list(self.renderer.GetLights())[1:]:
-            self.renderer.RemoveLight(light)
+        self.importer, self.renderer = parade(path)
         self.window = window_of(self.renderer)
         self.frames = frames
 
@@ -158,16 +144,6 @@ class Robots:
 
     def advance(self, i):
         self.importer.SetTime(self.moment(i % self.frames))
-
-
-def robots_file():
-    """Where the robots are; None, and a word about it, where they are not."""
-    root = os.environ.get("HRT_DATA_ROOT")
-    path = pathlib.Path(root, "bart/robots/aff/Robot.aff") if root else None
-    if path and path.is_file():
-        return str(path)
-    print("robots: skipped, no scene data (see Data/README.md)")
-    return None
 
 
 def stages(robots, frames):
@@ -377,7 +353,7 @@ def main(arguments):
     print(f"OpenGL: {device}, {os.cpu_count()} cores, medians of {frames} frames")
     for number in TABLES:
         print_table(number, tables[number])
-    results = {**header(frames), "device": device, "tables_ms": tables,
+    results = {**header(), "frames": frames, "device": device, "tables_ms": tables,
                "ratios": print_ratios(tables), "against_traditional": comparison}
     print_comparison(comparison)
     if robots and not options.no_figure:

@@ -2,22 +2,20 @@
 nothing: in a frame of the pass llvmpipe's threads share the cores with the update."""
 
 import json
-import os
 import pathlib
 import subprocess
 
-ROBOTS = "bart/robots/aff/Robot.aff"
+from measure import robots_file
+
 FRAMES = 100
 
 
 def run():
-    root = os.environ.get("HRT_DATA_ROOT")
-    path = pathlib.Path(root, ROBOTS) if root else None
-    if not path or not path.is_file():
-        print("robots: skipped, no scene data (see Data/README.md)")
+    path = robots_file()
+    if not path:
         return []
     program = pathlib.Path(__file__).resolve().parents[2] / "build/bin/hrtUpdateBenchmark"
-    output = subprocess.run([str(program), str(path), str(FRAMES)], check=True,
+    output = subprocess.run([str(program), path, str(FRAMES)], check=True,
                             stdout=subprocess.PIPE, text=True).stdout
     rows = [{"scene": "robots", "case": "structure", "changes": "animation step", **json.loads(line)}
             for line in output.splitlines()]

@@ -1,19 +1,14 @@
 #!/usr/bin/env bash
-# Runs a command inside a root folder:
+# Runs a command inside a root folder, contained as contained.sh says:
 #
 #   enter_root.sh ROOT [--read FROM=TO] [--write FROM=TO] ... -- COMMAND [ARGUMENT ...]
 #
 # --read and --write show a folder or file of this machine inside the root, the first so that nothing
-# can be written to it. The command gets name spaces of its own for mounts and processes: when it
-# ends, in whatever way, or when the caller is killed, the kernel itself ends what it started and
-# takes back what was mounted. So there is nothing to clean up, and nothing to forget.
+# can be written to it.
 set -euo pipefail
 
-if [[ $1 != --inside ]]; then
-  # The kernel ends unshare with the caller, and the command with unshare.
-  exec setpriv --pdeathsig KILL \
-    unshare --mount --propagation private --pid --fork --kill-child \
-    "${BASH_SOURCE[0]}" --inside "$@"
+if [[ $1 != --contained ]]; then
+  exec "$(dirname "${BASH_SOURCE[0]}")/contained.sh" "${BASH_SOURCE[0]}" --contained "$@"
 fi
 root=$2
 shift 2

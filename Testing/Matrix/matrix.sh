@@ -38,21 +38,23 @@ debian_mirror() {
   printf '%s\n' "${mirror%%$'\n'*}"
 }
 
-# A bare root of the release $1, which the lines start from as copies.
-make_base() {
-  local base=$work/base/$1
-  [[ ! -d $base ]] || return 0
+# A bare root of the release $1; each line starts from a copy of it. (A subshell, which ends the lock.)
+make_base() (
+  base=$work/base/$1
+  mkdir -p "$work/base"
+  exec 8>"$work/base/lock" # a line of another run may want the same
+  flock 8
+  [[ ! -d $base ]] || exit 0
   say "making a root of Debian $1"
   rm -rf "$base.new"
   mkdir -p "$base.new"
-  debootstrap --variant=minbase "$1" "$base.new" "$(debian_mirror)" ||
-    { tail -n 5 "$base.new/debootstrap/debootstrap.log" || true; return 1; }
+  "$here/contained.sh" debootstrap --variant=minbase "$1" "$base.new" "$(debian_mirror)"
   # No package may start a service, and none needs to reach the disk at once.
   printf '#!/bin/sh\nexit 101\n' >"$base.new/usr/sbin/policy-rc.d"
   chmod +x "$base.new/usr/sbin/policy-rc.d"
   echo force-unsafe-io >"$base.new/etc/dpkg/dpkg.cfg.d/matrix"
   mv "$base.new" "$base"
-}
+)
 
 # How this machine reaches its mirror and the package index: files and settings of the root $1.
 connect() {
@@ -62,7 +64,7 @@ connect() {
   done
   {
     apt-config dump | grep -E '^Acquire::(https?::Proxy|Check-(Valid-Until|Date)) ' || true
-    echo 'Acquire::https::CaInfo "/run/matrix/certificates";'
+    [[ -z $certificates ]] || echo 'Acquire::https::CaInfo "/run/matrix/certificates";'
   } >"$1/etc/apt/apt.conf.d/90matrix"
 }
 
@@ -144,6 +146,8 @@ prepare_line() {
 run_line() {
   local line=$1 log=$work/$1/log report=$work/$1/result/tests.xml start=$SECONDS status=0 said
   mkdir -p "$work/$line"
+  exec 9>"$work/$line/lock"
+  flock -n 9 || die "another run is at work in build-matrix/$line"
   say "$line (log: build-matrix/$line/log)"
   # A subshell of its own, so that its first failing command ends the line and not the matrix.
   (
@@ -151,7 +155,9 @@ run_line() {
     prepare_line "$line"
     run_inside "$line"
   ) >"$log" 2>&1 </dev/null &
-  wait $! || status=$?
+  job=$!
+  wait "$job" || status=$?
+  job=
   if [[ -s $report ]]; then
     said=$(summary "$report")
   else
@@ -174,11 +180,16 @@ for line in "$@"; do
   [[ -n ${release[$line]:-} ]] || die "there is no line '$line'; the lines are ${all_lines[*]}"
 done
 ((EUID == 0)) || die "only root can make and enter a root folder"
-for tool in debootstrap unshare setpriv; do
+for tool in debootstrap flock setpriv unshare; do
   command -v "$tool" >/dev/null || die "$tool is missing"
 done
 certificates=${PIP_CERT:-${SSL_CERT_FILE:-/etc/ssl/certs/ca-certificates.crt}}
 [[ -e $certificates ]] || certificates=
+
+# What runs in the background does not hear the terminal's interrupt: end it with this script.
+job=
+trap '[[ -z $job ]] || kill "$job"' EXIT
+trap 'exit 130' INT TERM
 
 failed=0
 for line in "$@"; do

@@ -4,8 +4,9 @@
 // shadow maps and shade. All positions are in view coordinates.
 uniform usampler2D hitBuffer;
 uniform usamplerBuffer trianglePart; // part number of each triangle
-uniform samplerBuffer positions;     // 3 corners a triangle
-uniform samplerBuffer normals;
+uniform usamplerBuffer indices;      // the vertices of each triangle's corners
+uniform samplerBuffer positions;     // of the vertices
+uniform samplerBuffer normals;       // of a part's vertices or triangles, as the next ones
 uniform samplerBuffer colors;
 uniform samplerBuffer coordinates;
 uniform samplerBuffer lookups;
@@ -26,12 +27,16 @@ uniform vec3 rayOrigin0, rayOriginX, rayOriginY;
 uniform vec3 rayDirection0, rayDirectionX, rayDirectionY;
 out vec4 fragmentColor;
 
+//HRT::Fetch
 //HRT::Shading
 
-mat4 fetchMatrix(samplerBuffer table, int at)
+// A matrix of three rows, the fourth being (0, 0, 0, 1).
+mat4x3 fetchMatrix(samplerBuffer table, int at)
 {
-  return mat4(texelFetch(table, at), texelFetch(table, at + 1), texelFetch(table, at + 2),
-    texelFetch(table, at + 3));
+  vec4 x = texelFetch(table, at);
+  vec4 y = texelFetch(table, at + 1);
+  vec4 z = texelFetch(table, at + 2);
+  return mat4x3(x.x, y.x, z.x, x.y, y.y, z.y, x.z, y.z, z.z, x.w, y.w, z.w);
 }
 
 HrtLight fetchLight(int index)
@@ -54,13 +59,21 @@ float lightVisibility(int index, HrtLight light, vec3 p, vec3 ng, float folds)
 // Where the data of the triangle at hand lie, for what the shared source of colours asks for.
 int partNumber;
 ivec4 partBases;  // first triangle, normals, colours, coordinates
-ivec4 partLookup; // start, width, height; texture coordinates
-int cornerInPart; // the first of the triangle's three
+ivec4 partLookup; // start, width, height; first vertex
+ivec4 partMore;   // whether normals and colours are the triangles'; texture coordinates
+int triangleInPart;
+ivec3 verticesInPart;
 int colorSource;
+
+// The places of an attribute's values at the corners; `base`: of the part's first one.
+ivec3 cornersFrom(int base, bool ofTriangles)
+{
+  return base + (ofTriangles ? ivec3(triangleInPart) : verticesInPart);
+}
 
 HrtTerms fetchTerms(bool front)
 {
-  int at = partNumber * PART_TEXELS + (front ? 7 : 10);
+  int at = partNumber * PART_TEXELS + (front ? 6 : 9);
   vec4 ambient = texelFetch(partTable, at);
   vec4 diffuse = texelFetch(partTable, at + 1);
   vec4 specular = texelFetch(partTable, at + 2);
@@ -70,8 +83,8 @@ HrtTerms fetchTerms(bool front)
 
 #define HRT_COLOR_SOURCE colorSource
 #define HRT_TERMS(side) fetchTerms(side)
-#define HRT_CORNER_COLOR(k) texelFetch(colors, partBases.z * 3 + cornerInPart + (k))
-#define HRT_CORNER_COORDINATES(k) texelFetch(coordinates, partBases.w * 3 + cornerInPart + (k)).rg
+#define HRT_CORNER_COLOR(k) texelFetch(colors, cornersFrom(partBases.z, partMore.y == 1)[k])
+#define HRT_CORNER_COORDINATES(k) texelFetch(coordinates, cornersFrom(partBases.w, false)[k]).rg
 #define HRT_LOOKUP(i) texelFetch(lookups, partLookup.x + (i))
 #define HRT_LOOKUP_SIZE partLookup.yz
 #define HRT_COLOR_ONE 1.0
@@ -88,16 +101,21 @@ vec4 shadeHit(uvec4 hit)
   partNumber = part;
   partBases = texelFetch(partLayout, part * LAYOUT_TEXELS);
   partLookup = texelFetch(partLayout, part * LAYOUT_TEXELS + 1);
-  cornerInPart = (triangle - partBases.x) * 3;
+  partMore = texelFetch(partLayout, part * LAYOUT_TEXELS + 2);
+  triangleInPart = triangle - partBases.x;
+  // The last corner of a part's i-th triangle is its i-th vertex.
+  ivec3 vertices = ivec3(int(texelFetch(indices, 3 * triangle).r),
+    int(texelFetch(indices, 3 * triangle + 1).r), partLookup.w + triangleInPart);
+  verticesInPart = vertices - partLookup.w;
   colorSource = partBases.z >= 0 ? HRT_COLOR_OF_CORNERS
     : partBases.w >= 0           ? HRT_COLOR_OF_LOOKUP
                                  : HRT_COLOR_OF_PROPERTY;
-  vec4 flags = texelFetch(partTable, part * PART_TEXELS + 13); // lit, folds, textures: on back
+  vec4 flags = texelFetch(partTable, part * PART_TEXELS + 12); // lit, folds, textures: on back
 
-  mat4 positionToView = fetchMatrix(partTable, part * PART_TEXELS);
-  vec3 a = (positionToView * texelFetch(positions, triangle * 3)).xyz;
-  vec3 b = (positionToView * texelFetch(positions, triangle * 3 + 1)).xyz;
-  vec3 c = (positionToView * texelFetch(positions, triangle * 3 + 2)).xyz;
+  mat4x3 positionToView = fetchMatrix(partTable, part * PART_TEXELS);
+  vec3 a = positionToView * texelFetch(positions, vertices.x);
+  vec3 b = positionToView * texelFetch(positions, vertices.y);
+  vec3 c = positionToView * texelFetch(positions, vertices.z);
 
   vec2 ndc = gl_FragCoord.xy / viewportSize * 2.0 - 1.0;
   vec3 origin = rayOrigin0 + ndc.x * rayOriginX + ndc.y * rayOriginY;
@@ -120,12 +138,12 @@ vec4 shadeHit(uvec4 hit)
   vec3 n = ng;
   if (partBases.y >= 0)
   {
-    int at = partBases.y * 3 + cornerInPart;
-    mat3 toView = mat3(texelFetch(partTable, part * PART_TEXELS + 4).xyz,
-      texelFetch(partTable, part * PART_TEXELS + 5).xyz,
-      texelFetch(partTable, part * PART_TEXELS + 6).xyz);
-    n = hrtSmoothNormal(toView * hrtInterpolate3(texelFetch(normals, at).xyz,
-      texelFetch(normals, at + 1).xyz, texelFetch(normals, at + 2).xyz, uv.x, uv.y),
+    ivec3 at = cornersFrom(partBases.y, partMore.x == 1);
+    mat3 toView = mat3(texelFetch(partTable, part * PART_TEXELS + 3).xyz,
+      texelFetch(partTable, part * PART_TEXELS + 4).xyz,
+      texelFetch(partTable, part * PART_TEXELS + 5).xyz);
+    n = hrtSmoothNormal(toView * hrtInterpolate3(fetchVector(normals, at.x),
+      fetchVector(normals, at.y), fetchVector(normals, at.z), uv.x, uv.y),
       ng, sides.front);
   }
 
@@ -154,7 +172,7 @@ vec4 shadeHit(uvec4 hit)
 #ifdef HRT_TEXTURES
   if (sides.front || flags.z == 1.0)
   {
-    readyTextures(part, flags, partLookup.w, cornerInPart);
+    readyTextures(part, flags, cornersFrom(partMore.z, false));
     color *= hrtTextureColor(uv.x, uv.y).rgb;
   }
 #endif

@@ -2,19 +2,19 @@
 // TextureBuffers.h). Of the triangle at hand:
 uniform samplerBuffer texels;
 uniform samplerBuffer floatTexels;
-int firstTextureCoordinates; // its first corner's place among all coordinates
+ivec3 textureCorners;        // its corners' places among all coordinates
 vec4 textureX;               // the rows of its part's texture transform, and what stands beside them
 vec4 textureY;
 vec4 textureW;
 bool textureTransformed;
 
 // Before any of the shared functions is called.
-void readyTextures(int part, vec4 flags, int textureCoordinates, int cornerInPart)
+void readyTextures(int part, vec4 flags, ivec3 corners)
 {
-  firstTextureCoordinates = textureCoordinates * 3 + cornerInPart;
-  textureX = texelFetch(partTable, part * PART_TEXELS + 14);
-  textureY = texelFetch(partTable, part * PART_TEXELS + 15);
-  textureW = texelFetch(partTable, part * PART_TEXELS + 16);
+  textureCorners = corners;
+  textureX = texelFetch(partTable, part * PART_TEXELS + 13);
+  textureY = texelFetch(partTable, part * PART_TEXELS + 14);
+  textureW = texelFetch(partTable, part * PART_TEXELS + 15);
   textureTransformed = flags.w == 1.0;
 }
 
@@ -36,7 +36,7 @@ vec4 fetchTexel(HrtTexture image, int i)
 #define HRT_TEXTURE_COUNT int(textureY.w)
 #define HRT_TEXTURE(k) fetchTexture(k)
 #define HRT_TEXEL(image, i) fetchTexel(image, i)
-#define HRT_TEXTURE_COORDINATES(k) texelFetch(coordinates, firstTextureCoordinates + (k)).rg
+#define HRT_TEXTURE_COORDINATES(k) texelFetch(coordinates, textureCorners[k]).rg
 #define HRT_TEXTURE_TRANSFORMED textureTransformed
 #define HRT_TEXTURE_X textureX.xyz
 #define HRT_TEXTURE_Y textureY.xyz

@@ -22,11 +22,21 @@ install() {
     "${missing[@]}" </dev/null
 }
 
-# Configures /project into /build with the CMake $1 and the options after it, and builds.
+# Configures /project into /build with the CMake $1 and the options after it, and builds. Developers'
+# warnings are left out: they are about VTK's own CMake files.
 build() {
   local cmake=$1
   shift
   say "configuring and building"
-  "$cmake" -S /project -B /build -G Ninja -DCMAKE_BUILD_TYPE=Release "$@"
+  "$cmake" -S /project -B /build -G Ninja -DCMAKE_BUILD_TYPE=Release \
+    -DCMAKE_SUPPRESS_DEVELOPER_WARNINGS=ON "$@"
   ninja -C /build
+}
+
+# Runs the tests of /build with the command $@, which is ctest, maybe with some of its options or
+# within another command.
+run_tests() {
+  say "testing"
+  "$@" --test-dir /build --output-on-failure --no-tests=error -j "$(nproc)" \
+    --output-junit /result/tests.xml
 }

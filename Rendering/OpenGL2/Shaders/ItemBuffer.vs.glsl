@@ -1,0 +1,14 @@
+//VTK::System::Dec
+// Item buffer, vertex stage. The vertices are ordered so that the last corner of a part's i-th triangle
+// is the part's i-th vertex; the last corner is the one whose flat outputs a triangle takes. So the
+// triangle's number comes without gl_PrimitiveID (broken in several drivers), and vertices are shared.
+in vec4 position;
+uniform mat4 positionToClip;
+uniform int vertexToTriangle; // from a last corner's number to its triangle's
+flat out int triangle;
+
+void main()
+{
+  triangle = gl_VertexID + vertexToTriangle;
+  gl_Position = positionToClip * position;
+}
