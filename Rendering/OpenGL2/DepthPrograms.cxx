@@ -44,18 +44,15 @@ DepthPrograms::~DepthPrograms()
 }
 
 //------------------------------------------------------------------------------
-vtkShaderProgram* DepthPrograms::make(Kind kind)
+unsigned int DepthPrograms::kindOf(const Part& part) const
 {
-  if (kind == Shared)
-  {
-    return readyProgram(this->Window, this->Sources.vertex, this->Sources.fragment);
-  }
-  vtkShaderProgram* program = readyProgram(
-    this->Window, Corners_vs, depthSource(this->Sources.cornerFragment, kind == CornersWithHoles));
-  if (!program)
-  {
-    return nullptr;
-  }
+  return (part.perforated ? Corners | Holes : this->AllCorners ? Corners : Shared) |
+    (part.copies ? WithCopies : Shared);
+}
+
+//------------------------------------------------------------------------------
+void DepthPrograms::bindTables(vtkShaderProgram* program)
+{
   if (!this->Units)
   {
     this->Units = std::make_unique<ScopedTextureUnits>(kSamplerCount);
@@ -73,11 +70,25 @@ vtkShaderProgram* DepthPrograms::make(Kind kind)
       program->SetUniformi(kSamplers[i], i);
     }
   }
+}
+
+//------------------------------------------------------------------------------
+vtkShaderProgram* DepthPrograms::make(unsigned int kind)
+{
+  const bool corners = (kind & Corners) != 0, copies = (kind & WithCopies) != 0;
+  vtkShaderProgram* program = readyProgram(this->Window,
+    depthVertexSource(corners ? Corners_vs : this->Sources.vertex, copies),
+    corners ? depthSource(this->Sources.cornerFragment, (kind & Holes) != 0)
+            : std::string(this->Sources.fragment));
+  if (program && kind != Shared)
+  {
+    this->bindTables(program);
+  }
   return program;
 }
 
 //------------------------------------------------------------------------------
-bool DepthPrograms::use(Kind kind)
+bool DepthPrograms::use(unsigned int kind)
 {
   vtkShaderProgram*& wanted = this->Programs[kind];
   if (!wanted)
@@ -91,13 +102,13 @@ bool DepthPrograms::use(Kind kind)
   if (wanted != this->Current)
   {
     this->Window->GetShaderCache()->ReadyShaderProgram(wanted);
-    if (kind == Shared)
+    if ((kind & Corners) != 0)
     {
-      this->From.geometry.bindForDrawing(static_cast<GLuint>(wanted->GetHandle()));
+      this->From.geometry.bindForFetching();
     }
     else
     {
-      this->From.geometry.bindForFetching();
+      this->From.geometry.bindForDrawing(static_cast<GLuint>(wanted->GetHandle()));
     }
     this->Current = wanted;
   }
@@ -108,28 +119,37 @@ bool DepthPrograms::use(Kind kind)
 bool DepthPrograms::draw(
   const Snapshot& snapshot, std::size_t part, const glm::dmat4& worldToClip)
 {
-  const bool holes = snapshot.parts[part].perforated;
-  const Kind kind = holes ? CornersWithHoles : this->AllCorners ? Corners : Shared;
+  const Part& of = snapshot.parts[part];
+  const unsigned int kind = this->kindOf(of);
   if (!this->use(kind))
   {
     return false;
   }
-  glm::mat4 matrix(worldToClip * snapshot.parts[part].positionsToWorld());
-  this->Current->SetUniformMatrix4x4("positionToClip", &matrix[0][0]);
-  if (kind != Shared)
-  {
-    if (holes)
+  const GeometryBuffers& geometry = this->From.geometry;
+  const auto set = [this](const char* name, int value) {
+    if (this->Current->IsUniformUsed(name))
     {
-      this->Current->SetUniformi("part", static_cast<int>(part));
+      this->Current->SetUniformi(name, value);
     }
-    this->From.geometry.drawCorners(part);
+  };
+  glm::mat4 matrix(worldToClip * bufferToWorld(of));
+  this->Current->SetUniformMatrix4x4("positionToClip", &matrix[0][0]);
+  if (of.copies)
+  {
+    const GeometryBuffers::CopyPlace copies = geometry.copies(part);
+    set("firstCopy", copies.first);
+    set("copyTexels", copies.texels);
+    set("trianglesOfCopy", copies.triangles);
+  }
+  if ((kind & Corners) == 0)
+  {
+    set("vertexToTriangle", geometry.vertexToTriangle(part));
+    geometry.draw(part);
     return true;
   }
-  if (this->Current->IsUniformUsed("vertexToTriangle"))
-  {
-    this->Current->SetUniformi("vertexToTriangle", this->From.geometry.vertexToTriangle(part));
-  }
-  this->From.geometry.draw(part);
+  set("cornerToTriangle", geometry.cornerToTriangle(part));
+  set("part", static_cast<int>(part));
+  geometry.drawCorners(part);
   return true;
 }
 

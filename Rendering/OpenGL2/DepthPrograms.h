@@ -51,15 +51,19 @@ public:
   bool draw(const Snapshot& snapshot, std::size_t part, const glm::dmat4& worldToClip);
 
 private:
-  enum Kind
+  // What a part needs, as bits.
+  enum Kind : unsigned int
   {
-    Shared,
-    Corners,
-    CornersWithHoles,
-    KindCount
+    Shared = 0,
+    Corners = 1,
+    Holes = 2, // corners too
+    WithCopies = 4,
+    KindCount = 8
   };
-  bool use(Kind kind);
-  vtkShaderProgram* make(Kind kind);
+  unsigned int kindOf(const Part& part) const;
+  bool use(unsigned int kind);
+  vtkShaderProgram* make(unsigned int kind);
+  void bindTables(vtkShaderProgram* program);
 
   vtkOpenGLRenderWindow* Window;
   Shaders Sources;

@@ -75,9 +75,23 @@ std::size_t uploadAttribute(TextureBuffer& table, std::int32_t first, const Vert
 } // namespace
 
 //------------------------------------------------------------------------------
+glm::dmat4 bufferToWorld(const Part& part)
+{
+  if (!part.copies)
+  {
+    return part.positionsToWorld();
+  }
+  glm::dmat4 m = part.localToWorld;
+  m[3] = m * glm::dvec4(part.copies->origin, 1.0);
+  return m;
+}
+
+//------------------------------------------------------------------------------
 bool GeometryBuffers::Slot::samePlace(const Slot& o) const
 {
-  return this->firstTriangle == o.firstTriangle && this->triangles == o.triangles &&
+  return this->firstTriangle == o.firstTriangle && this->place == o.place &&
+    this->triangles == o.triangles && this->copies == o.copies &&
+    this->firstCopy == o.firstCopy && this->copyTexels == o.copyTexels &&
     this->firstVertex == o.firstVertex && this->vertices == o.vertices &&
     this->normals == o.normals && this->normalsOf == o.normalsOf && this->colors == o.colors &&
     this->colorsOf == o.colorsOf && this->coordinates == o.coordinates &&
@@ -127,6 +141,7 @@ std::vector<GeometryBuffers::Slot> GeometryBuffers::layOut(
         : reserve(used,
             attribute.attachment == Attachment::Vertices ? slot.vertices : slot.triangles);
     };
+    slot.place = sizes.triangles;
     sizes.triangles += slot.triangles;
     slot.firstVertex = reserve(sizes.vertices, slot.vertices);
     slot.normals = reserveAttribute(sizes.normals, mesh.normals);
@@ -136,7 +151,19 @@ std::vector<GeometryBuffers::Slot> GeometryBuffers::layOut(
     slot.coordinates = reserveAttribute(sizes.coordinates, mesh.coordinates);
     slot.textureCoordinates = reserveAttribute(sizes.coordinates, mesh.textureCoordinates);
     slot.lookup = mesh.lookup.empty() ? -1 : reserve(sizes.lookups, mesh.lookup.size());
+    if (part.copies)
+    {
+      slot.copiesVersion = part.copies->version;
+      slot.copies = part.copies->count();
+      slot.copyTexels = part.copies->colors.empty() ? 3 : 4;
+      slot.firstCopy =
+        reserve(sizes.copyTexels, slot.copies * static_cast<std::size_t>(slot.copyTexels));
+    }
     slots.push_back(slot);
+  }
+  for (Slot& slot : slots)
+  {
+    slot.firstCopy += static_cast<std::int32_t>(sizes.vertices);
   }
   return slots;
 }
@@ -154,6 +181,14 @@ bool GeometryBuffers::fits(const Sizes& sizes, std::string& error) const
       std::to_string(most) + " of either in a texture buffer";
     return false;
   }
+  if (sizes.vertices + sizes.copyTexels > static_cast<std::size_t>(limit))
+  {
+    error = "the scene's glyphs and vertices need " +
+      std::to_string(sizes.vertices + sizes.copyTexels) +
+      " texels, this OpenGL context holds at most " + std::to_string(limit) +
+      " in a texture buffer";
+    return false;
+  }
   return true;
 }
 
@@ -168,7 +203,8 @@ bool GeometryBuffers::holds(const Snapshot& snapshot) const
   {
     const Part& part = snapshot.parts[i];
     if (this->Slots[i].version != part.geometry->version ||
-      this->Slots[i].firstTriangle != part.firstTriangle)
+      this->Slots[i].firstTriangle != part.firstTriangle ||
+      this->Slots[i].copiesVersion != (part.copies ? part.copies->version : 0))
     {
       return false;
     }
@@ -201,9 +237,16 @@ bool GeometryBuffers::update(const Snapshot& snapshot, std::string& error)
   }
   for (std::size_t i = 0; i < slots.size(); ++i)
   {
-    if (!sameStorage || slots[i].version != this->Slots[i].version)
+    const bool newMesh = !sameStorage || slots[i].version != this->Slots[i].version;
+    if (newMesh)
     {
       this->uploadPart(snapshot.parts[i], slots[i]);
+    }
+    // The mesh's origin is in the copies' rows.
+    if (slots[i].copiesVersion != 0 &&
+      (newMesh || slots[i].copiesVersion != this->Slots[i].copiesVersion))
+    {
+      this->uploadCopies(snapshot.parts[i], slots[i]);
     }
   }
   this->Slots = slots;
@@ -219,7 +262,7 @@ void GeometryBuffers::allocate(const Sizes& sizes)
   const auto reserve = [](TextureBuffer& table, std::size_t bytes) {
     table.upload(nullptr, bytes, GL_STATIC_DRAW);
   };
-  reserve(this->Positions, sizeof(glm::vec4) * sizes.vertices);
+  reserve(this->Positions, sizeof(glm::vec4) * (sizes.vertices + sizes.copyTexels));
   reserve(this->Indices, 3 * sizeof(std::uint32_t) * sizes.triangles);
   reserve(this->Normals, sizeof(glm::vec3) * sizes.normals);
   reserve(this->Colors, sizeof(glm::u8vec4) * sizes.colors);
@@ -241,7 +284,7 @@ void GeometryBuffers::uploadPart(const Part& part, const Slot& slot)
     }
   });
   using Corners = std::array<std::uint32_t, 3>;
-  this->UploadedBytes += uploadEach<Corners>(this->Indices, slot.firstTriangle, [&](auto put) {
+  this->UploadedBytes += uploadEach<Corners>(this->Indices, slot.place, [&](auto put) {
     order.forEachTriangle(
       [&](const Corners& c) { put({ first + c[0], first + c[1], first + c[2] }); });
   });
@@ -256,6 +299,29 @@ void GeometryBuffers::uploadPart(const Part& part, const Slot& slot)
     this->UploadedBytes +=
       uploadAll(this->Lookups, static_cast<std::size_t>(slot.lookup), mesh.lookup);
   }
+}
+
+//------------------------------------------------------------------------------
+void GeometryBuffers::uploadCopies(const Part& part, const Slot& slot)
+{
+  const Copies& copies = *part.copies;
+  const glm::dvec3 origin = part.geometry->origin;
+  const auto first = static_cast<std::size_t>(slot.firstCopy);
+  this->UploadedBytes += uploadEach<glm::vec4>(this->Positions, first, [&](auto put) {
+    for (std::size_t i = 0; i < copies.count(); ++i)
+    {
+      // From positions, without the mesh's origin, to the part's coordinates less the copies' origin.
+      for (const glm::vec4& row : copies.rows[i])
+      {
+        const double shift = glm::dot(glm::dvec3(row), origin);
+        put(glm::vec4(glm::vec3(row), static_cast<float>(static_cast<double>(row.w) + shift)));
+      }
+      if (!copies.colors.empty())
+      {
+        put(glm::vec4(copies.colors[i]) / 255.0f);
+      }
+    }
+  });
 }
 
 //------------------------------------------------------------------------------
@@ -286,6 +352,9 @@ void GeometryBuffers::uploadLayout(const Snapshot& snapshot)
       std::max(slot.lookup, 0), mesh.lookupWidth, mesh.lookupHeight, slot.firstVertex);
     layout.emplace_back(slot.normalsOf == Attachment::Triangles ? 1 : 0,
       slot.colorsOf == Attachment::Triangles ? 1 : 0, slot.textureCoordinates, 0);
+    layout.emplace_back(static_cast<int>(slot.place),
+      slot.copiesVersion == 0 ? 0 : static_cast<int>(slot.triangles), slot.firstCopy,
+      slot.copyTexels);
   }
   this->Layout.upload(layout.data(), layout.size() * sizeof(layout[0]), GL_STATIC_DRAW);
   this->UploadedBytes += layout.size() * sizeof(layout[0]);
@@ -307,9 +376,16 @@ void GeometryBuffers::bindForDrawing(GLuint program) const
 void GeometryBuffers::draw(std::size_t part) const
 {
   const Slot& slot = this->Slots[part];
-  const std::size_t offset = 3 * sizeof(std::uint32_t) * slot.firstTriangle;
-  glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(3 * slot.triangles), GL_UNSIGNED_INT,
-    reinterpret_cast<const void*>(offset));
+  const std::size_t offset = 3 * sizeof(std::uint32_t) * slot.place;
+  const auto corners = static_cast<GLsizei>(3 * slot.triangles);
+  if (slot.copiesVersion == 0)
+  {
+    glDrawElements(
+      GL_TRIANGLES, corners, GL_UNSIGNED_INT, reinterpret_cast<const void*>(offset));
+    return;
+  }
+  glDrawElementsInstanced(GL_TRIANGLES, corners, GL_UNSIGNED_INT,
+    reinterpret_cast<const void*>(offset), static_cast<GLsizei>(slot.copies));
 }
 
 //------------------------------------------------------------------------------
@@ -329,8 +405,28 @@ void GeometryBuffers::bindForFetching() const
 void GeometryBuffers::drawCorners(std::size_t part) const
 {
   const Slot& slot = this->Slots[part];
-  glDrawArrays(GL_TRIANGLES, static_cast<GLint>(3 * slot.firstTriangle),
-    static_cast<GLsizei>(3 * slot.triangles));
+  const auto first = static_cast<GLint>(3 * slot.place);
+  const auto corners = static_cast<GLsizei>(3 * slot.triangles);
+  if (slot.copiesVersion == 0)
+  {
+    glDrawArrays(GL_TRIANGLES, first, corners);
+    return;
+  }
+  glDrawArraysInstanced(GL_TRIANGLES, first, corners, static_cast<GLsizei>(slot.copies));
+}
+
+//------------------------------------------------------------------------------
+int GeometryBuffers::cornerToTriangle(std::size_t part) const
+{
+  const Slot& slot = this->Slots[part];
+  return static_cast<int>(slot.firstTriangle) - static_cast<int>(slot.place);
+}
+
+//------------------------------------------------------------------------------
+GeometryBuffers::CopyPlace GeometryBuffers::copies(std::size_t part) const
+{
+  const Slot& slot = this->Slots[part];
+  return { slot.firstCopy, slot.copyTexels, static_cast<int>(slot.triangles) };
 }
 
 //------------------------------------------------------------------------------

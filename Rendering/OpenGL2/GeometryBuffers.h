@@ -1,8 +1,9 @@
 // The scene's triangles on the GPU, once, for all passes: the vertex buffer that the item buffer and
 // the shadow maps draw from is the same memory as the texture buffer that direct rendering and the ray
 // caster fetch from, and so are the indices. Triangles lie in the snapshot's order, so a triangle's
-// number is its place; the vertices of a part lie in the order of VertexOrder.h. Depends on geometry
-// only: matrices and materials are in PartTables.
+// number is its place, but for parts with copies: their meshes are there once and come last, and the
+// rows of the copies' matrices follow the vertices. The vertices of a part lie in the order of
+// VertexOrder.h. Depends on geometry only: parts' matrices and materials are in PartTables.
 #pragma once
 
 #include "Rendering/OpenGL2/ObjectPool.h"
@@ -18,6 +19,10 @@ namespace hrt
 namespace gl
 {
 
+// From what the buffers hold of a part to the world: its positions or, where it has copies, what their
+// rows make of these.
+glm::dmat4 bufferToWorld(const Part& part);
+
 class GeometryBuffers
 {
 public:
@@ -32,14 +37,25 @@ public:
   bool holds(const Snapshot& snapshot) const;
 
   // Feeds the program's attribute `position`; draw() then rasterises the triangles of one part, of
-  // which a last corner's gl_VertexID is vertexToTriangle() less than the triangle's number.
+  // which a last corner's gl_VertexID is vertexToTriangle() less than the triangle's number. Of a part
+  // with copies each is an instance, and the number that of the first copy.
   void bindForDrawing(GLuint program) const;
   void draw(std::size_t part) const;
   int vertexToTriangle(std::size_t part) const;
 
+  // Where the rows of a part's copies lie in the table of positions, and how many texels each takes:
+  // three, and a fourth where copies have colours.
+  struct CopyPlace
+  {
+    int first, texels, triangles; // triangles: of a copy
+  };
+  CopyPlace copies(std::size_t part) const;
+
   // The same without shared vertices, for a program that fetches them by itself from the tables.
+  // A corner's gl_VertexID / 3 is cornerToTriangle() less than the triangle's number.
   void bindForFetching() const;
   void drawCorners(std::size_t part) const;
+  int cornerToTriangle(std::size_t part) const;
 
   // Binds the tables from the given unit on, in the order of the RayCaster's samplers; returns the
   // number of units used.
@@ -55,12 +71,16 @@ private:
   {
     std::uint64_t version = 0;
     std::uint64_t key = 0;
-    TriangleId firstTriangle = 0;
+    TriangleId firstTriangle = 0; // its number
+    std::size_t place = 0;        // of its first triangle in the tables
     std::size_t triangles = 0;
     std::int32_t firstVertex = 0;
     std::size_t vertices = 0;
     std::int32_t normals = -1, colors = -1, coordinates = -1, lookup = -1;
     std::int32_t textureCoordinates = -1; // in the table of coordinates too
+    std::uint64_t copiesVersion = 0;      // 0: none
+    std::size_t copies = 1;
+    std::int32_t firstCopy = 0, copyTexels = 0; // in the table of positions
     Attachment normalsOf = Attachment::Vertices, colorsOf = Attachment::Vertices;
 
     bool samePlace(const Slot& o) const;
@@ -69,12 +89,14 @@ private:
   struct Sizes
   {
     std::size_t triangles = 0, vertices = 0, normals = 0, colors = 0, coordinates = 0, lookups = 0;
+    std::size_t copyTexels = 0;
   };
 
   std::vector<Slot> layOut(const Snapshot& snapshot, Sizes& sizes) const;
   bool fits(const Sizes& sizes, std::string& error) const;
   void allocate(const Sizes& sizes);
   void uploadPart(const Part& part, const Slot& slot);
+  void uploadCopies(const Part& part, const Slot& slot);
   void uploadOwners(const Snapshot& snapshot);
   void uploadLayout(const Snapshot& snapshot);
 

@@ -114,7 +114,7 @@ bool ObjectIntersectionBuffer::draw(vtkOpenGLRenderWindow* window, const Snapsho
     {
       return false;
     }
-    this->TrianglesDrawn += snapshot.parts[i].geometry->triangleCount();
+    this->TrianglesDrawn += snapshot.parts[i].triangleCount();
   }
   return true;
 }

@@ -1,6 +1,8 @@
 // See PartTables.h.
 #include "Rendering/OpenGL2/PartTables.h"
 
+#include "Rendering/OpenGL2/GeometryBuffers.h"
+
 #include "Rendering/Core/Shading/Lighting.h"
 
 #include <glm/gtc/matrix_inverse.hpp>
@@ -33,7 +35,7 @@ void appendTextureTransform(std::vector<glm::vec4>& table, const Part& part, std
 void appendPart(std::vector<glm::vec4>& table, const Part& part, const glm::dmat4& worldToView,
   std::size_t texturePlace)
 {
-  const glm::dmat4 toView = worldToView * part.positionsToWorld();
+  const glm::dmat4 toView = worldToView * bufferToWorld(part);
   const glm::dmat3 normals = glm::inverseTranspose(glm::dmat3(toView));
   // The last row is that of every affine matrix.
   const glm::dmat4 rows = glm::transpose(toView);

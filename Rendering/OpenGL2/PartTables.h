@@ -24,10 +24,12 @@ namespace gl
 //   layout: (first triangle, normals, colours, coordinates)
 //           (lookup start, width, height, first vertex)
 //           (normals of triangles, colours of triangles, texture coordinates, 0)
+//           (place of the first triangle, triangles of a copy or 0: no copies, first texel of the
+//           copies among the positions, texels a copy)
 //   light:  (position, kind) (direction, cosine of the cone) (colour, exponent)
 //           (attenuation, 0) (first shadow face, number of faces, 0, 0)
 inline constexpr int kPartTexels = 16;
-inline constexpr int kLayoutTexels = 3;
+inline constexpr int kLayoutTexels = 4;
 inline constexpr int kLightTexels = 5;
 
 class PartTables

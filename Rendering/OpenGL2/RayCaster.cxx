@@ -10,6 +10,7 @@
 
 #include "ScreenTriangle_vs.h"
 
+#include <algorithm>
 #include <limits>
 
 namespace hrt
@@ -132,6 +133,13 @@ bool RayCaster::shade(vtkOpenGLRenderWindow* window, const Inputs& inputs, const
     "directRendering", inputs.hits.visibility() == Visibility::DirectRendering ? 1 : 0);
   program->SetUniformi("shadowLight", shadowLight);
   program->SetUniformi("triangleLimit", static_cast<int>(snapshot.triangleCount));
+  if (program->IsUniformUsed("firstCopied"))
+  {
+    const auto copied = std::find_if(snapshot.parts.begin(), snapshot.parts.end(),
+      [](const Part& part) { return part.copies != nullptr; });
+    program->SetUniformi("firstCopied", static_cast<int>(copied->firstTriangle));
+    program->SetUniformi("lastPart", static_cast<int>(snapshot.parts.size()) - 1);
+  }
   setRays(program, snapshot.camera.viewRays());
 
   glBindVertexArray(this->VertexArray);

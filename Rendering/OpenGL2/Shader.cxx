@@ -7,6 +7,7 @@
 #include "vtkOpenGLShaderCache.h"
 #include "vtkShaderProgram.h"
 
+#include "Copies.h"
 #include "Holes.h"
 #include "RayCaster_fs.h"
 #include "Shading.h"
@@ -43,6 +44,7 @@ std::string definitions(const SurfaceFeatures& features)
   text << std::showpoint;
   text << "#define real float\n#define HRT_FUNCTION\n";
   text << (features.textures ? "#define HRT_TEXTURES\n" : "");
+  text << (features.copies ? "#define HRT_COPIES\n" : "");
   text << "#define PART_TEXELS " << kPartTexels << "\n";
   text << "#define LAYOUT_TEXELS " << kLayoutTexels << "\n";
   text << "#define LIGHT_TEXELS " << kLightTexels << "\n";
@@ -94,6 +96,15 @@ std::string depthSource(const char* text, bool holes)
       code, "//HRT::Textures", std::string(TextureFetch) + TextureLookup);
   }
   vtkShaderProgram::Substitute(result, "//HRT::Holes", code);
+  return result;
+}
+
+//------------------------------------------------------------------------------
+std::string depthVertexSource(const char* text, bool copies)
+{
+  std::string result = text;
+  vtkShaderProgram::Substitute(result, "//HRT::Define", copies ? "#define HRT_COPIES" : "");
+  vtkShaderProgram::Substitute(result, "//HRT::Copies", ::Copies); // the text, not hrt::Copies
   return result;
 }
 

@@ -26,6 +26,9 @@ std::string rayCasterSource(const SurfaceFeatures& features);
 // A fragment shader that rasterises parts: as it is, or made to leave out the holes of their textures.
 std::string depthSource(const char* text, bool holes);
 
+// A vertex shader that rasterises parts: of a part without copies, or with.
+std::string depthVertexSource(const char* text, bool copies);
+
 // Forgets the current program, in VTK's cache too.
 void releaseProgram(vtkOpenGLRenderWindow* window);
 

@@ -155,7 +155,7 @@ bool ShadowMaps::draw(vtkOpenGLRenderWindow* window, const Snapshot& snapshot,
           {
             return false;
           }
-          this->TrianglesDrawn += snapshot.parts[p].geometry->triangleCount();
+          this->TrianglesDrawn += snapshot.parts[p].triangleCount();
         }
       }
     }

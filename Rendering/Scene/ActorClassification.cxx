@@ -71,6 +71,8 @@ const char* describe(LeftToVTK reason)
       return "glyphs with vertex or line cells beside their surface";
     case LeftToVTK::ClippedGlyphs:
       return "glyphs clipped by the mapper's planes";
+    case LeftToVTK::TexturedGlyphs:
+      return "textured glyphs";
     case LeftToVTK::ProjectiveMatrix:
       return "the matrix is projective";
     case LeftToVTK::SingularMatrix:

@@ -33,6 +33,7 @@ enum class LeftToVTK
   SubPieces,
   GlyphLines,
   ClippedGlyphs,
+  TexturedGlyphs,
   ProjectiveMatrix,
   SingularMatrix,
   OutOfRange, // its bounds in the world

@@ -338,6 +338,11 @@ LeftToVTK SceneReader::addPieces(const ActorPath& path, const MapperReading& rea
     this->keep(path);
     return LeftToVTK::ClippedGlyphs; // no two would be cut alike
   }
+  if (glyphs && !images.textures.layers.empty())
+  {
+    this->keep(path);
+    return LeftToVTK::TexturedGlyphs;
+  }
 
   memory.pieces.clear();
   std::size_t surfaces = 0, otherCells = 0, emptied = 0; // by planes

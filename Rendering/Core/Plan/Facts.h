@@ -25,6 +25,7 @@ struct Circumstances
 struct SurfaceFeatures
 {
   bool textures = false;
+  bool copies = false; // see Copies.h
 };
 
 // What the scene holds, as far as the plan needs to know.

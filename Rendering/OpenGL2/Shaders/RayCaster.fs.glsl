@@ -81,12 +81,45 @@ HrtTerms fetchTerms(bool front)
     ambient.rgb, diffuse.rgb, specular.rgb, ambient.w, diffuse.w, specular.w, 1.0);
 }
 
+#ifdef HRT_COPIES
+uniform int firstCopied; // number of the first triangle of a part with copies; these parts come last
+uniform int lastPart;
+int firstTexelOfCopy; // its rows and colour among the positions
+bool copyIsColored = false;
+
+// From a triangle's number to its place in the tables, with its part and its copy.
+int placeOf(int triangle, out int part, out bool copied)
+{
+  copied = triangle >= firstCopied;
+  if (!copied)
+  {
+    part = int(texelFetch(trianglePart, triangle).r);
+    return triangle;
+  }
+  part = lastPart;
+  while (texelFetch(partLayout, part * LAYOUT_TEXELS).x > triangle)
+  {
+    --part;
+  }
+  int local = triangle - texelFetch(partLayout, part * LAYOUT_TEXELS).x;
+  ivec4 mesh = texelFetch(partLayout, part * LAYOUT_TEXELS + 3); // place, triangles, first, texels
+  firstTexelOfCopy = mesh.z + local / mesh.y * mesh.w;
+  copyIsColored = mesh.w == 4;
+  return mesh.x + local % mesh.y;
+}
+#endif
+
 #define HRT_COLOR_SOURCE colorSource
 #define HRT_TERMS(side) fetchTerms(side)
 #define HRT_CORNER_COLOR(k) texelFetch(colors, cornersFrom(partBases.z, partMore.y == 1)[k])
 #define HRT_CORNER_COORDINATES(k) texelFetch(coordinates, cornersFrom(partBases.w, false)[k]).rg
 #define HRT_LOOKUP(i) texelFetch(lookups, partLookup.x + (i))
 #define HRT_LOOKUP_SIZE partLookup.yz
+#ifdef HRT_COPIES
+#define HRT_COPY_COLOR texelFetch(positions, firstTexelOfCopy + 3)
+#else
+#define HRT_COPY_COLOR vec4(0.0)
+#endif
 #define HRT_COLOR_ONE 1.0
 //HRT::SurfaceColors
 
@@ -97,12 +130,22 @@ HrtTerms fetchTerms(bool front)
 vec4 shadeHit(uvec4 hit)
 {
   int triangle = int(hit.x - 1u);
+#ifdef HRT_COPIES
+  int part;
+  bool copied;
+  triangle = placeOf(triangle, part, copied);
+#else
   int part = int(texelFetch(trianglePart, triangle).r);
+#endif
   partNumber = part;
   partBases = texelFetch(partLayout, part * LAYOUT_TEXELS);
   partLookup = texelFetch(partLayout, part * LAYOUT_TEXELS + 1);
   partMore = texelFetch(partLayout, part * LAYOUT_TEXELS + 2);
+#ifdef HRT_COPIES
+  triangleInPart = triangle - texelFetch(partLayout, part * LAYOUT_TEXELS + 3).x;
+#else
   triangleInPart = triangle - partBases.x;
+#endif
   // The last corner of a part's i-th triangle is its i-th vertex.
   ivec3 vertices = ivec3(int(texelFetch(indices, 3 * triangle).r),
     int(texelFetch(indices, 3 * triangle + 1).r), partLookup.w + triangleInPart);
@@ -110,12 +153,34 @@ vec4 shadeHit(uvec4 hit)
   colorSource = partBases.z >= 0 ? HRT_COLOR_OF_CORNERS
     : partBases.w >= 0           ? HRT_COLOR_OF_LOOKUP
                                  : HRT_COLOR_OF_PROPERTY;
+#ifdef HRT_COPIES
+  if (copyIsColored)
+  {
+    colorSource = HRT_COLOR_OF_COPY;
+  }
+#endif
   vec4 flags = texelFetch(partTable, part * PART_TEXELS + 12); // lit, folds, textures: on back
 
   mat4x3 positionToView = fetchMatrix(partTable, part * PART_TEXELS);
-  vec3 a = positionToView * texelFetch(positions, vertices.x);
-  vec3 b = positionToView * texelFetch(positions, vertices.y);
-  vec3 c = positionToView * texelFetch(positions, vertices.z);
+  vec4 localA = texelFetch(positions, vertices.x);
+  vec4 localB = texelFetch(positions, vertices.y);
+  vec4 localC = texelFetch(positions, vertices.z);
+#ifdef HRT_COPIES
+  mat3 copyNormals = mat3(1.0);
+  if (copied)
+  {
+    mat4x3 place = fetchMatrix(positions, firstTexelOfCopy);
+    localA = vec4(place * localA, 1.0);
+    localB = vec4(place * localB, 1.0);
+    localC = vec4(place * localC, 1.0);
+    // The inverse transpose but for a positive factor, which a direction does not have.
+    copyNormals = mat3(cross(place[1], place[2]), cross(place[2], place[0]),
+      cross(place[0], place[1])) * sign(dot(place[0], cross(place[1], place[2])));
+  }
+#endif
+  vec3 a = positionToView * localA;
+  vec3 b = positionToView * localB;
+  vec3 c = positionToView * localC;
 
   vec2 ndc = gl_FragCoord.xy / viewportSize * 2.0 - 1.0;
   vec3 origin = rayOrigin0 + ndc.x * rayOriginX + ndc.y * rayOriginY;
@@ -142,6 +207,9 @@ vec4 shadeHit(uvec4 hit)
     mat3 toView = mat3(texelFetch(partTable, part * PART_TEXELS + 3).xyz,
       texelFetch(partTable, part * PART_TEXELS + 4).xyz,
       texelFetch(partTable, part * PART_TEXELS + 5).xyz);
+#ifdef HRT_COPIES
+    toView = toView * copyNormals;
+#endif
     n = hrtSmoothNormal(toView * hrtInterpolate3(fetchVector(normals, at.x),
       fetchVector(normals, at.y), fetchVector(normals, at.z), uv.x, uv.y),
       ng, sides.front);
