@@ -58,7 +58,15 @@ const std::map<std::string, Recipe>& recipes()
           out[0] = double(part.geometry->cellIds[part.indexOf(p.triangle)]);
         } } },
     { "prop",
-      { 1, true, [](const Snapshot&, const Pixel& p, double* out) { out[0] = double(p.part); } } },
+      { 1, true,
+        [](const Snapshot& s, const Pixel& p, double* out) {
+          out[0] = double(s.parts[p.part].source.prop);
+        } } },
+    { "block",
+      { 1, true,
+        [](const Snapshot& s, const Pixel& p, double* out) {
+          out[0] = double(s.parts[p.part].source.block);
+        } } },
     { "glyph",
       { 1, true,
         [](const Snapshot& s, const Pixel& p, double* out) {

@@ -305,13 +305,13 @@ public:
   ///@{
   /**
    * Per-pixel results to keep besides the picture, by name; nothing is computed that was not asked
-   * for. Names: "triangle" (number in the scene), "cell" (cell of the mapper's input, or of its block),
-   * "prop" (see GetPropFromId), "block" (flat index in composite data, -1 also in other data), all 64-bit
-   * with -1 where nothing was hit; "barycentric" (u, v of the
-   * second and third corner; with DirectRendering as the rasteriser interpolated them), "position"
-   * (world), "normal" (world, unit, on the viewer's side), "depth" (distance along the view axis),
-   * "shadow" (one component a light: its visible share, 1 lit to 0 in shadow), all with NaN where
-   * nothing was hit. Actors that are left to VTK are not in the buffers. An unknown name is an error
+   * for. Names: "triangle" (number in the scene), "cell" (cell of the mapper's input, or of its
+   * block; of a glyph in its source), "prop" (see GetPropFromId), "block" (flat index in composite data,
+   * -1 also in other data), "glyph" (its point in the input of a vtkGlyph3DMapper, or its selection id,
+   * -1 also in other data), all 64-bit with -1 where nothing was hit; "barycentric" (u, v of the second
+   * and third corner; with DirectRendering as the rasteriser interpolated them), "position" (world),
+   * "normal" (world, unit, on the viewer's side), "depth" (distance along the view axis), "shadow" (one
+   * component a light: its visible share, 1 lit to 0 in shadow), all with NaN where nothing was hit. Actors that are left to VTK are not in the buffers. An unknown name is an error
    * and changes nothing. GetKnownBuffers lists all names. Default: none.
    */
   void SetBuffers(const std::vector<std::string>& names);

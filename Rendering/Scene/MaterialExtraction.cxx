@@ -41,7 +41,7 @@ void apply(const PieceOverrides& overrides, PhongTerms& terms)
 {
   if (overrides.color)
   {
-    terms.ambientColor = terms.diffuseColor = terms.specularColor = overrides.colorValue;
+    terms.ambientColor = terms.diffuseColor = overrides.colorValue;
   }
   if (overrides.opacity)
   {

@@ -3,12 +3,25 @@ the kinds of colours, normals, lights, cameras and matrices that VTK's polydata 
 
 import math
 
+import numpy as np
 import vtkmodules.vtkRenderingFreeType  # noqa: F401  (text in one scene)
-from vtkmodules.vtkCommonCore import vtkFloatArray, vtkLookupTable, vtkPoints
-from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkPolyData
+from vtkmodules.util.numpy_support import numpy_to_vtk
+from vtkmodules.vtkCommonCore import vtkFloatArray, vtkLookupTable, vtkPoints, vtkVersion
+from vtkmodules.vtkCommonDataModel import (
+    vtkCellArray,
+    vtkImageData,
+    vtkMultiBlockDataSet,
+    vtkPlane,
+    vtkPolyData,
+)
 from vtkmodules.vtkCommonMath import vtkMatrix4x4
-from vtkmodules.vtkFiltersCore import vtkElevationFilter, vtkPolyDataNormals, vtkStripper
-from vtkmodules.vtkFiltersCore import vtkTriangleFilter
+from vtkmodules.vtkFiltersCore import (
+    vtkAppendFilter,
+    vtkElevationFilter,
+    vtkPolyDataNormals,
+    vtkStripper,
+    vtkTriangleFilter,
+)
 from vtkmodules.vtkFiltersSources import (
     vtkConeSource,
     vtkCubeSource,
@@ -21,11 +34,21 @@ from vtkmodules.vtkIOPLY import vtkPLYReader
 from vtkmodules.vtkRenderingCore import (
     vtkActor,
     vtkAssembly,
+    vtkCompositeDataDisplayAttributes,
+    vtkDataSetMapper,
+    vtkGlyph3DMapper,
     vtkLight,
     vtkPolyDataMapper,
     vtkProperty,
     vtkRenderer,
 )
+
+if (vtkVersion.GetVTKMajorVersion(), vtkVersion.GetVTKMinorVersion()) >= (9, 3):
+    from vtkmodules.vtkRenderingCore import vtkCompositePolyDataMapper
+else:  # the class of that name draws its blocks by one mapper each
+    from vtkmodules.vtkRenderingOpenGL2 import (
+        vtkCompositePolyDataMapper2 as vtkCompositePolyDataMapper,
+    )
 
 
 def actor_of(source, **properties):
@@ -357,6 +380,116 @@ def far_from_origin():
     return look(renderer, (148377.5, 1235.2, -223421.0), (148376.0, 1234.0, -223423.0))
 
 
+def mapped(mapper, data, **properties):
+    """An actor whose mapper, of any kind, has the data as its input."""
+    mapper.SetInputDataObject(data)
+    actor = vtkActor()
+    actor.SetMapper(mapper)
+    for name, value in properties.items():
+        getattr(actor.GetProperty(), "Set" + name)(*(value if isinstance(value, tuple) else (value,)))
+    return actor
+
+
+def glyph_actor(count=60):
+    """Cones at random places with sizes, directions and colours, under a mirroring, uneven matrix."""
+    rng = np.random.default_rng(1)
+    points = vtkPoints()
+    for place in rng.uniform(-2, 2, (count, 3)):
+        points.InsertNextPoint(*place)
+    data = vtkPolyData()
+    data.SetPoints(points)
+    for name, values in (("size", rng.uniform(0.3, 1, count)), ("way", rng.normal(size=(count, 3)))):
+        array = numpy_to_vtk(values, deep=True)
+        array.SetName(name)
+        data.GetPointData().AddArray(array)
+    data.GetPointData().SetActiveScalars("size")
+    cone = vtkConeSource()
+    cone.SetResolution(12)
+    mapper = vtkGlyph3DMapper()
+    mapper.SetSourceConnection(cone.GetOutputPort())
+    mapper.SetScaleArray("size")
+    mapper.SetScaleModeToScaleByMagnitude()
+    mapper.SetScaleFactor(0.9)
+    mapper.SetOrientationArray("way")
+    actor = mapped(mapper, data, Specular=0.3, SpecularPower=20.0)
+    actor.SetScale(-1, 1, 1.2)
+    return actor
+
+
+def glyphs():
+    """A mesh at each of many points: sizes, directions and colours by arrays."""
+    renderer = renderer_of(glyph_actor(), actor_of(plane(3.0, -2.6)))
+    renderer.AddLight(scene_light((3, 8, 2)))
+    return look(renderer, (4, 5, 9), (0, -0.5, 0))
+
+
+def block_actor():
+    """Four balls as blocks at two levels, two of them with a colour and one hidden."""
+    blocks = vtkMultiBlockDataSet()
+    nested = vtkMultiBlockDataSet()
+    for i in range(4):
+        sphere = vtkSphereSource()
+        sphere.SetCenter(1.1 * i, 0, 0.2 * i)
+        sphere.SetThetaResolution(24)
+        sphere.SetPhiResolution(16)
+        sphere.Update()
+        (nested if i % 2 else blocks).SetBlock(i // 2, sphere.GetOutput())
+    blocks.SetBlock(2, nested)
+    mapper = vtkCompositePolyDataMapper()
+    attributes = vtkCompositeDataDisplayAttributes()
+    mapper.SetCompositeDataDisplayAttributes(attributes)
+    actor = mapped(mapper, blocks, Specular=0.2)
+    mapper.SetBlockColor(1, (0.9, 0.4, 0.2))
+    mapper.SetBlockVisibility(2, False)
+    mapper.SetBlockColor(5, (0.2, 0.7, 0.4))
+    return actor
+
+
+def composite():
+    """Composite data: blocks with colours, one of them hidden."""
+    renderer = renderer_of(block_actor(), actor_of(plane(3.0, -0.6)))
+    renderer.AddLight(scene_light((1, 3, 2)))
+    return look(renderer, (1.5, 3, 7), (1.5, 0, 0))
+
+
+def data_set():
+    """An image and an unstructured grid, whose surfaces the mapper takes."""
+    image = vtkImageData()
+    image.SetDimensions(6, 5, 4)
+    values = numpy_to_vtk(np.arange(120) % 17 / 17.0, deep=True)
+    image.GetPointData().SetScalars(values)
+    block = mapped(vtkDataSetMapper(), image, Specular=0.2)
+    block.SetScale(0.4)
+    grid = vtkAppendFilter()
+    ball = vtkSphereSource()
+    ball.SetCenter(-1.0, 1.0, 0.5)
+    ball.SetThetaResolution(24)
+    ball.SetPhiResolution(16)
+    grid.AddInputConnection(ball.GetOutputPort())
+    grid.Update()
+    renderer = renderer_of(
+        block, mapped(vtkDataSetMapper(), grid.GetOutput(), Color=(0.4, 0.7, 0.9))
+    )
+    renderer.AddLight(scene_light((1, 3, 2)))
+    return look(renderer, (1, 3, 6), (0.4, 0.8, 0.5))
+
+
+def clipped():
+    """Two clipping planes, which open a ball, and the backs of its triangles seen through the hole."""
+    ball = vtkSphereSource()
+    ball.SetThetaResolution(40)
+    ball.SetPhiResolution(30)
+    actor = actor_of(ball, Color=(0.9, 0.7, 0.4), Specular=0.2)
+    for origin, normal in (((0, 0.2, 0), (0, -1, 0)), ((0.1, 0, 0.2), (-0.4, 0, -1))):
+        cut = vtkPlane()
+        cut.SetOrigin(origin)
+        cut.SetNormal(normal)
+        actor.GetMapper().AddClippingPlane(cut)
+    renderer = renderer_of(actor, actor_of(plane(1.0, -0.6)))
+    renderer.AddLight(scene_light((1, 3, 2)))
+    return look(renderer, (0.7, 1.6, 2.4))
+
+
 PARITY = [
     default_headlight,
     directional_lights,
@@ -373,4 +506,8 @@ PARITY = [
     parallel_off_centre,
     strips_and_lighting_off,
     far_from_origin,
+    glyphs,
+    composite,
+    data_set,
+    clipped,
 ]

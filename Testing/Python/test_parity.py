@@ -15,8 +15,11 @@ SHEET_FOOTPRINTS = 4.0
 
 
 def near_silhouette(rt):
-    """Pixels with, in their 3 x 3 neighbourhood, a hit beside no hit, another prop, or another sheet."""
-    prop = buffer(rt, "prop")
+    """Pixels with, in their 3 x 3 neighbourhood, a hit beside no hit, another prop, block or glyph, or
+    another sheet."""
+    # One number for the three.
+    owner = np.stack([buffer(rt, name) for name in ("prop", "block", "glyph")], axis=2)
+    prop = np.unique(owner.reshape(-1, 3), axis=0, return_inverse=True)[1].reshape(owner.shape[:2])
     position = buffer(rt, "position")
     normal = buffer(rt, "normal")
     height, width = prop.shape
@@ -48,7 +51,7 @@ def compare(renderer, render, visibility="ItemBuffer", size=(400, 300), shading=
     rt.SetShadowModeToOff()
     getattr(rt, "SetVisibilityTo" + visibility)()
     getattr(rt, "SetPrimaryShadingTo" + shading)()
-    rt.SetBuffers(["prop", "position", "normal"])
+    rt.SetBuffers(["prop", "block", "glyph", "position", "normal"])
     renderer.SetPass(rt)
     shown = render(renderer, size).astype(int)
     assert not statistics(rt)["left_to_vtk"], "the scene must be traced, not left to VTK"

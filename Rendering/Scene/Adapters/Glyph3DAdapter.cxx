@@ -439,12 +439,14 @@ private:
   {
     Memory& memory = this->Memories[block];
     const double* const color = actor->GetProperty()->GetColor();
-    const Signature signature(set, set->GetMTime(), mapper->GetMTime(), sources.size(),
-      glm::vec3(color[0], color[1], color[2]));
-    if (memory.signature != signature)
+    const auto now = [&] {
+      return Signature(set, set->GetMTime(), mapper->GetMTime(), sources.size(),
+        glm::vec3(color[0], color[1], color[2]));
+    };
+    if (memory.signature != now())
     {
-      memory.signature = signature;
       this->make(mapper, actor, set, sources.size(), memory);
+      memory.signature = now(); // mapping colours may give the mapper its lookup table
     }
     if (!memory.problem.empty())
     {

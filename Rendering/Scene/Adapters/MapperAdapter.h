@@ -31,7 +31,7 @@ namespace scene
 // Where a piece has settings of its own that go before those of the actor's property.
 struct PieceOverrides
 {
-  bool color = false; // one colour for ambient, diffuse and specular light; scalars do not count
+  bool color = false; // one colour for ambient and diffuse light; scalars do not count
   glm::vec3 colorValue{ 1.0f };
   bool opacity = false; // in the property's place
   float opacityValue = 1.0f;

@@ -292,12 +292,11 @@ protected:
     return array;
   }
 
-  // Where the square's corner (1, 0, 0) is put by a copy of the only part.
+  // Where a copy of the only part puts the square's corner (1, 0, 0), seen from the glyph's point.
   glm::dvec3 corner(std::size_t copy)
   {
     const hrt::Part& part = this->update().parts.at(0);
-    return glm::dvec3(part.copies->matrix(copy) * glm::dvec4(1, 0, 0, 1)) -
-      glm::dvec3(1e6 + 10.0 * double(copy), double(copy), 0);
+    return glm::dvec3(part.copies->matrix(copy)[0]);
   }
 
   vtkNew<vtkPolyData> places;
