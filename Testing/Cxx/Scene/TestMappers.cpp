@@ -10,7 +10,6 @@
 #include "vtkDoubleArray.h"
 #include "vtkGlyph3DMapper.h"
 #include "vtkImageData.h"
-#include "vtkLODActor.h"
 #include "vtkMultiBlockDataSet.h"
 #include "vtkPlane.h"
 #include "vtkPointData.h"
@@ -18,6 +17,11 @@
 #include "vtkSphereSource.h"
 #include "vtkUnstructuredGrid.h"
 #include "vtkVersion.h"
+
+// In a module that not every VTK has.
+#if __has_include("vtkLODActor.h")
+#include "vtkLODActor.h"
+#endif
 
 // The mapper that draws blocks was a class of its own before VTK 9.3, which deprecates it.
 #if VTK_VERSION_NUMBER < VTK_VERSION_CHECK(9, 3, 0)
@@ -144,6 +148,7 @@ TEST_F(Mappers, ReleasedInputsAreThereInEveryFrame)
   }
 }
 
+#if __has_include("vtkLODActor.h")
 TEST_F(Mappers, LevelOfDetailActorsShowTheirFullMapper)
 {
   vtkNew<vtkLODActor> detailed;
@@ -155,6 +160,7 @@ TEST_F(Mappers, LevelOfDetailActorsShowTheirFullMapper)
   EXPECT_EQ(this->update().triangleCount, 2u);
   EXPECT_TRUE(this->scene->IsDrawnByTracer(detailed));
 }
+#endif
 
 //------------------------------------------------------------------------------
 // Flat indices: 0 the root, 1 a square, 2 nothing, 3 a branch, 4 and 5 squares in it.
