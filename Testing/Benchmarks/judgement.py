@@ -46,9 +46,9 @@ def block_ratio(old, new, one_sided):
     """The log ratio of a block, two turns of either build in the order ABBA or BAAB, so that a drift
     within it cancels.
 
-    `one_sided`: interference only ever adds, as to the CPU time of a process, through cold caches; then
-    the lesser of two turns is nearer to the truth. Elapsed time is mostly waiting on a busy machine, and
-    the lesser of two is then luck; all of it counts."""
+    `one_sided`: interference only ever adds, and seldom, as to the CPU time of a process, through cold
+    caches, or to a short stage; then the lesser of two turns is nearer to the truth. The elapsed time of a
+    frame is mostly waiting on a busy machine, and the lesser of two is then luck; all of it counts."""
     value = min if one_sided else statistics.geometric_mean
     return math.log(value(new) / value(old))
 
