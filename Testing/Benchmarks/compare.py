@@ -150,7 +150,7 @@ def measure_frames(measures, builds, frames, lot):
             turns[k].append(builds[k].ask(turn=frames))
         for measure in measures:
             old, new = ([turn[measure] for turn in side] for side in turns)
-            blocks[measure].append(judgement.block_ratio(old, new, one_sided=measure == "cpu"))
+            blocks[measure].append(judgement.block_ratio(old, new, one_sided=measure != "wall"))
         for known, side in zip(figures, turns):
             known += [turn[measures[0]] for turn in side]
     ratios = {measure: judgement.round_ratio(values) for measure, values in blocks.items()}

@@ -46,9 +46,9 @@ def block_ratio(old, new, one_sided):
     """The log ratio of a block, two turns of either build in the order ABBA or BAAB, so that a drift
     within it cancels.
 
-    `one_sided`: interference only ever adds, as to the CPU time of a process, through cold caches; then
-    the lesser of two turns is nearer to the truth. Elapsed time is mostly waiting on a busy machine, and
-    the lesser of two is then luck; all of it counts."""
+    `one_sided`: interference only ever adds, and seldom, as to the CPU time of a process, through cold
+    caches, or to a short stage; then the lesser of two turns is nearer to the truth. The elapsed time of a
+    frame is mostly waiting on a busy machine, and the lesser of two is then luck; all of it counts."""
     value = min if one_sided else statistics.geometric_mean
     return math.log(value(new) / value(old))
 
@@ -85,12 +85,18 @@ def t_quantile(error, freedom):
 
 def interval(rounds, error):
     """The interval that holds the true log ratio but for the probability `error`: Student's over the
-    rounds. Their medians are near to normal; where a round is an outlier it widens the interval and so
-    delays the answer, but does not bend it."""
-    middle = statistics.fmean(rounds)
-    if len(rounds) < 2:
+    rounds. Of eight rounds and more an eighth at either end is trimmed, and counted as the next ones in
+    (Yuen, 1974): a round that another program hit would else widen the interval for the rest of the time.
+    """
+    count, cut = len(rounds), len(rounds) // 8
+    ordered = sorted(rounds)
+    kept = ordered[cut:count - cut]
+    middle = statistics.fmean(kept)
+    if count < 2:
         return Interval(-math.inf, middle, math.inf)
-    width = t_quantile(error, len(rounds) - 1) * statistics.stdev(rounds) / math.sqrt(len(rounds))
+    winsorized = [kept[0]] * cut + kept + [kept[-1]] * cut
+    width = t_quantile(error, len(kept) - 1) * math.sqrt(
+        (count - 1) * statistics.variance(winsorized) / (len(kept) * (len(kept) - 1)))
     return Interval(middle - width, middle, middle + width)
 
 
