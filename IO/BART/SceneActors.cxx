@@ -72,7 +72,7 @@ void setRayKeys(const Material& material, vtkActor* actor)
   {
     vtkHybridMaterial::SetGlass(actor, material.indexOfRefraction);
   }
-  else if (mirror > 0.0)
+  else if (mirror > 0.0 && !(material.transmittance > 0.0)) // a translucent pane is drawn by VTK
   {
     vtkHybridMaterial::SetReflectance(actor, mirror);
   }
