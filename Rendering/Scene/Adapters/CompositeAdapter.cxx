@@ -10,6 +10,7 @@
 #include "vtkNew.h"
 #include "vtkPolyData.h"
 #include "vtkPolyDataMapper.h"
+#include "vtkScalarsToColors.h"
 #include "vtkVersion.h"
 
 #include <map>
