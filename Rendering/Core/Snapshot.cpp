@@ -170,6 +170,14 @@ void compareLights(const Snapshot& before, const Snapshot& now, Changes& changes
 
 } // namespace
 
+glm::dmat4 Camera::clipToWindow() const
+{
+  glm::dmat4 m(1.0);
+  m[0][0] = m[3][0] = 0.5 * this->width;
+  m[1][1] = m[3][1] = 0.5 * this->height;
+  return m;
+}
+
 CameraRays Camera::viewRays() const
 {
   return raysOf(this->viewToClip);

@@ -55,6 +55,22 @@ struct PhongTerms
   bool operator!=(const PhongTerms& o) const { return !(*this == o); }
 };
 
+// How the edges of cells are shown on a surface; see Surface/Edges.glsl.
+struct EdgeStyle
+{
+  bool visible = false; // on a part whose geometry knows its sides
+  glm::vec3 color{ 0.0f };
+  float opacity = 1.0f; // of the edges over the surface
+  float width = 1.0f;   // pixels
+  bool tubes = false;   // lit as if they were tubes
+
+  bool operator==(const EdgeStyle& o) const
+  {
+    return visible == o.visible && color == o.color && opacity == o.opacity &&
+      width == o.width && tubes == o.tubes;
+  }
+};
+
 struct Material
 {
   PhongTerms front;
@@ -65,6 +81,7 @@ struct Material
   float reflectance = 0.0f;    // [0, 1]: share of the mirror image in the colour
   float indexOfRefraction = 0; // 0: not glass; else the ratio inside : outside, >= 1
   Textures textures;           // of a part whose geometry has texture coordinates
+  EdgeStyle edges;
 
   bool isMirror() const { return reflectance > 0.0f; }
   bool isGlass() const { return indexOfRefraction > 0.0f; }
@@ -74,7 +91,8 @@ struct Material
   {
     return front == o.front && back == o.back && lit == o.lit && cullFront == o.cullFront &&
       cullBack == o.cullBack && reflectance == o.reflectance &&
-      indexOfRefraction == o.indexOfRefraction && textures == o.textures;
+      indexOfRefraction == o.indexOfRefraction && textures == o.textures &&
+      edges == o.edges;
   }
   bool operator!=(const Material& o) const { return !(*this == o); }
 };
@@ -104,6 +122,10 @@ struct Part
   bool tintsShadow = false;
   // Its textures have holes: there it does not exist, for camera, rays and light alike.
   bool perforated = false;
+
+  // Whether it may look different from point to point for other reasons than light.
+  bool hasDetail() const { return !material.textures.layers.empty() || showsEdges(); }
+  bool showsEdges() const { return material.edges.visible && !geometry->sides.empty(); }
 
   // A shadow map knows depths, and holes in them, but no shares.
   bool castsShadowInMaps() const { return castsShadow || (perforated && tintsShadow); }
@@ -186,6 +208,8 @@ struct Camera
   int width = 0;                // pixels of the renderer's viewport
   int height = 0;
 
+  // To pixels from the lower left corner of the viewport; depth stays.
+  glm::dmat4 clipToWindow() const;
   // In view coordinates. See CameraRays.
   CameraRays viewRays() const;
   // In world coordinates relative to a point near the scene.

@@ -18,7 +18,7 @@ namespace
 
 // The samplers in the order in which the tables are bound; null: not asked for.
 const char* const kSamplers[] = { nullptr, "indices", "positions", nullptr, nullptr, "coordinates",
-  nullptr, "partLayout", "partTable", nullptr, "texels", "floatTexels" };
+  nullptr, "partLayout", nullptr, "partTable", nullptr, "texels", "floatTexels" };
 constexpr int kSamplerCount = static_cast<int>(sizeof(kSamplers) / sizeof(kSamplers[0]));
 static_assert(
   kSamplerCount == GeometryBuffers::kUnits + PartTables::kUnits + TextureBuffers::kUnits,

@@ -95,7 +95,8 @@ bool GeometryBuffers::Slot::samePlace(const Slot& o) const
     this->firstVertex == o.firstVertex && this->vertices == o.vertices &&
     this->normals == o.normals && this->normalsOf == o.normalsOf && this->colors == o.colors &&
     this->colorsOf == o.colorsOf && this->coordinates == o.coordinates &&
-    this->textureCoordinates == o.textureCoordinates && this->lookup == o.lookup;
+    this->textureCoordinates == o.textureCoordinates && this->lookup == o.lookup &&
+    this->sides == o.sides;
 }
 
 //------------------------------------------------------------------------------
@@ -108,6 +109,7 @@ GeometryBuffers::GeometryBuffers(ObjectPool& pool)
   , Lookups(pool, GL_RGBA8)
   , TrianglePart(pool, GL_R32UI)
   , Layout(pool, GL_RGBA32I)
+  , Sides(pool, GL_RGBA32I)
   , VertexArray(pool.makeVertexArray())
   , EmptyVertexArray(pool.makeVertexArray())
 {
@@ -151,6 +153,7 @@ std::vector<GeometryBuffers::Slot> GeometryBuffers::layOut(
     slot.coordinates = reserveAttribute(sizes.coordinates, mesh.coordinates);
     slot.textureCoordinates = reserveAttribute(sizes.coordinates, mesh.textureCoordinates);
     slot.lookup = mesh.lookup.empty() ? -1 : reserve(sizes.lookups, mesh.lookup.size());
+    slot.sides = mesh.sides.empty() ? -1 : reserve(sizes.sides, mesh.sides.size());
     if (part.copies)
     {
       slot.copiesVersion = part.copies->version;
@@ -268,6 +271,7 @@ void GeometryBuffers::allocate(const Sizes& sizes)
   reserve(this->Colors, sizeof(glm::u8vec4) * sizes.colors);
   reserve(this->Coordinates, sizeof(glm::vec2) * sizes.coordinates);
   reserve(this->Lookups, sizeof(glm::u8vec4) * sizes.lookups);
+  reserve(this->Sides, sizeof(TriangleSides) * sizes.sides);
   reserve(this->TrianglePart, sizeof(std::uint32_t) * sizes.triangles);
 }
 
@@ -298,6 +302,11 @@ void GeometryBuffers::uploadPart(const Part& part, const Slot& slot)
   {
     this->UploadedBytes +=
       uploadAll(this->Lookups, static_cast<std::size_t>(slot.lookup), mesh.lookup);
+  }
+  if (!mesh.sides.empty())
+  {
+    this->UploadedBytes +=
+      uploadAll(this->Sides, static_cast<std::size_t>(slot.sides), mesh.sides);
   }
 }
 
@@ -351,7 +360,7 @@ void GeometryBuffers::uploadLayout(const Snapshot& snapshot)
     layout.emplace_back(
       std::max(slot.lookup, 0), mesh.lookupWidth, mesh.lookupHeight, slot.firstVertex);
     layout.emplace_back(slot.normalsOf == Attachment::Triangles ? 1 : 0,
-      slot.colorsOf == Attachment::Triangles ? 1 : 0, slot.textureCoordinates, 0);
+      slot.colorsOf == Attachment::Triangles ? 1 : 0, slot.textureCoordinates, slot.sides);
     layout.emplace_back(static_cast<int>(slot.place),
       slot.copiesVersion == 0 ? 0 : static_cast<int>(slot.triangles), slot.firstCopy,
       slot.copyTexels);
@@ -433,7 +442,8 @@ GeometryBuffers::CopyPlace GeometryBuffers::copies(std::size_t part) const
 void GeometryBuffers::bindTables(int firstUnit) const
 {
   const TextureBuffer* tables[kUnits] = { &this->TrianglePart, &this->Indices, &this->Positions,
-    &this->Normals, &this->Colors, &this->Coordinates, &this->Lookups, &this->Layout };
+    &this->Normals, &this->Colors, &this->Coordinates, &this->Lookups, &this->Layout,
+    &this->Sides };
   for (int i = 0; i < kUnits; ++i)
   {
     tables[i]->bind(firstUnit + i);

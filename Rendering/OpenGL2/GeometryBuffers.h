@@ -59,7 +59,7 @@ public:
 
   // Binds the tables from the given unit on, in the order of the RayCaster's samplers; returns the
   // number of units used.
-  static constexpr int kUnits = 8;
+  static constexpr int kUnits = 9;
   void bindTables(int firstUnit) const;
 
   std::uint64_t uploadedBytes() const { return this->UploadedBytes; }
@@ -78,6 +78,7 @@ private:
     std::size_t vertices = 0;
     std::int32_t normals = -1, colors = -1, coordinates = -1, lookup = -1;
     std::int32_t textureCoordinates = -1; // in the table of coordinates too
+    std::int32_t sides = -1;
     std::uint64_t copiesVersion = 0;      // 0: none
     std::size_t copies = 1;
     std::int32_t firstCopy = 0, copyTexels = 0; // in the table of positions
@@ -88,7 +89,8 @@ private:
   // How much of each table is in use.
   struct Sizes
   {
-    std::size_t triangles = 0, vertices = 0, normals = 0, colors = 0, coordinates = 0, lookups = 0;
+    std::size_t triangles = 0, vertices = 0, normals = 0, colors = 0, coordinates = 0, lookups = 0,
+                sides = 0;
     std::size_t copyTexels = 0;
   };
 
@@ -101,7 +103,7 @@ private:
   void uploadLayout(const Snapshot& snapshot);
 
   TextureBuffer Positions, Indices, Normals, Colors, Coordinates, Lookups;
-  TextureBuffer TrianglePart, Layout;
+  TextureBuffer TrianglePart, Layout, Sides;
   GLuint VertexArray, EmptyVertexArray;
   std::vector<Slot> Slots;
   bool Uploaded = false;

@@ -55,6 +55,11 @@ void appendPart(std::vector<glm::vec4>& table, const Part& part, const glm::dmat
   table.emplace_back(part.material.lit ? 1.0f : 0.0f, part.isFlat() ? 0.0f : 1.0f,
     part.material.textures.onBack ? 1.0f : 0.0f, part.material.textures.transformed ? 1.0f : 0.0f);
   appendTextureTransform(table, part, texturePlace);
+  const EdgeStyle& edges = part.material.edges;
+  table.emplace_back(edges.color, edges.opacity);
+  table.emplace_back(edges.width,
+    part.material.cullFront || part.material.cullBack ? 1.0f : 0.0f, edges.tubes ? 1.0f : 0.0f,
+    0.0f);
 }
 
 void appendLight(std::vector<glm::vec4>& table, const Light& light, bool singleHeadlight,

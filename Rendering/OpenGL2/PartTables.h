@@ -21,14 +21,15 @@ namespace gl
 //           9-11 back: the same, 12 (lit, folds, textures on the back, textures transformed),
 //           13-15 rows x, y, w of the texture transform with (place of the textures' descriptions in
 //           this table, their number, 0); the descriptions follow all parts: see TextureBuffers.h
+//           16-17 edges: (colour, opacity) (width, one side is culled, tubes, 0)
 //   layout: (first triangle, normals, colours, coordinates)
 //           (lookup start, width, height, first vertex)
-//           (normals of triangles, colours of triangles, texture coordinates, 0)
+//           (normals of triangles, colours of triangles, texture coordinates, sides)
 //           (place of the first triangle, triangles of a copy or 0: no copies, first texel of the
 //           copies among the positions, texels a copy)
 //   light:  (position, kind) (direction, cosine of the cone) (colour, exponent)
 //           (attenuation, 0) (first shadow face, number of faces, 0, 0)
-inline constexpr int kPartTexels = 16;
+inline constexpr int kPartTexels = 18;
 inline constexpr int kLayoutTexels = 4;
 inline constexpr int kLightTexels = 5;
 

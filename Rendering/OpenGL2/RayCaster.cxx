@@ -22,8 +22,8 @@ namespace
 
 // The samplers in the order in which the tables are bound.
 const char* const kSamplers[] = { "hitBuffer", "trianglePart", "indices", "positions", "normals",
-  "colors", "coordinates", "lookups", "partLayout", "partTable", "lightTable", "shadowFaces",
-  "shadowAtlas", "texels", "floatTexels" };
+  "colors", "coordinates", "lookups", "partLayout", "triangleSides", "partTable", "lightTable",
+  "shadowFaces", "shadowAtlas", "texels", "floatTexels" };
 constexpr int kSamplerCount = static_cast<int>(sizeof(kSamplers) / sizeof(kSamplers[0]));
 static_assert(kSamplerCount ==
     1 + GeometryBuffers::kUnits + PartTables::kUnits + ShadowMaps::kUnits + TextureBuffers::kUnits,
@@ -141,6 +141,11 @@ bool RayCaster::shade(vtkOpenGLRenderWindow* window, const Inputs& inputs, const
     program->SetUniformi("lastPart", static_cast<int>(snapshot.parts.size()) - 1);
   }
   setRays(program, snapshot.camera.viewRays());
+  if (program->IsUniformUsed("viewToWindow"))
+  {
+    glm::mat4 matrix(snapshot.camera.clipToWindow() * snapshot.camera.viewToClip);
+    program->SetUniformMatrix4x4("viewToWindow", &matrix[0][0]);
+  }
 
   glBindVertexArray(this->VertexArray);
   glDrawArrays(GL_TRIANGLES, 0, 3);

@@ -8,6 +8,7 @@
 #include "vtkShaderProgram.h"
 
 #include "Copies.h"
+#include "Edges.h"
 #include "Holes.h"
 #include "RayCaster_fs.h"
 #include "Shading.h"
@@ -44,6 +45,7 @@ std::string definitions(const SurfaceFeatures& features)
   text << std::showpoint;
   text << "#define real float\n#define HRT_FUNCTION\n";
   text << (features.textures ? "#define HRT_TEXTURES\n" : "");
+  text << (features.edges ? "#define HRT_EDGES\n" : "");
   text << (features.copies ? "#define HRT_COPIES\n" : "");
   text << "#define PART_TEXELS " << kPartTexels << "\n";
   text << "#define LAYOUT_TEXELS " << kLayoutTexels << "\n";
@@ -81,6 +83,7 @@ std::string rayCasterSource(const SurfaceFeatures& features)
   vtkShaderProgram::Substitute(text, "//HRT::SurfaceColors", SurfaceColors);
   vtkShaderProgram::Substitute(text, "//HRT::Textures",
     features.textures ? std::string(TextureFetch) + TextureLookup : std::string());
+  vtkShaderProgram::Substitute(text, "//HRT::Edges", features.edges ? Edges : "");
   return text;
 }
 

@@ -85,8 +85,6 @@ const char* describe(LeftToVTK reason)
       return "its texture has mip maps";
     case LeftToVTK::OtherTexture:
       return "its texture is not an image that can be read";
-    case LeftToVTK::EdgeVisibility:
-      return "edges are shown";
     case LeftToVTK::PhysicallyBased:
       return "physically based material";
     case LeftToVTK::ShaderReplacements:
@@ -122,7 +120,6 @@ bool seenByRays(LeftToVTK reason)
     case LeftToVTK::Translucent:
     case LeftToVTK::MipMappedTexture:
     case LeftToVTK::OtherTexture:
-    case LeftToVTK::EdgeVisibility:
     case LeftToVTK::PhysicallyBased:
     case LeftToVTK::ShaderReplacements:
       return true;
@@ -163,10 +160,6 @@ LeftToVTK classifyActor(vtkActor* actor)
 LeftToVTK classifySurface(vtkActor* actor, bool isGlass)
 {
   vtkProperty* property = actor->GetProperty();
-  if (property->GetEdgeVisibility())
-  {
-    return LeftToVTK::EdgeVisibility;
-  }
   if (property->GetInterpolation() == VTK_PBR)
   {
     return LeftToVTK::PhysicallyBased;

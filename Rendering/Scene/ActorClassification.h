@@ -42,7 +42,6 @@ enum class LeftToVTK
   // Its triangles are known, and seen in mirrors, but its picture is more than shaded triangles.
   MipMappedTexture,
   OtherTexture,
-  EdgeVisibility,
   PhysicallyBased,
   ShaderReplacements
 };

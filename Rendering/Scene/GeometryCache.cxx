@@ -3,6 +3,7 @@
 #include "Rendering/Scene/GeometryCache.h"
 
 #include "Rendering/Scene/ColorExtraction.h"
+#include "Rendering/Scene/SideExtraction.h"
 
 #include "vtkDataArray.h"
 #include "vtkMapper.h"
@@ -24,7 +25,7 @@ bool sameContent(const Geometry& a, const Geometry& b)
   return a.origin == b.origin && a.colorSource == b.colorSource && a.lookupWidth == b.lookupWidth &&
     a.lookupHeight == b.lookupHeight && a.triangles == b.triangles && a.cellIds == b.cellIds &&
     a.positions == b.positions && a.normals == b.normals && a.colors == b.colors &&
-    a.coordinates == b.coordinates && a.textureCoordinates == b.textureCoordinates && a.lookup == b.lookup;
+    a.coordinates == b.coordinates && a.textureCoordinates == b.textureCoordinates && a.sides == b.sides && a.lookup == b.lookup;
 }
 
 //------------------------------------------------------------------------------
@@ -63,7 +64,8 @@ GeometryCache::Signature GeometryCache::signatureOf(const GeometrySource& source
 {
   // A mapper's modification time includes that of its look-up table.
   return Signature(source.input, source.input->GetMTime(), source.mapper,
-    source.mapper->GetMTime(), source.flat, source.plain, source.textured);
+    source.mapper->GetMTime(), source.flat, source.plain, source.textured,
+    source.edges);
 }
 
 //------------------------------------------------------------------------------
@@ -79,6 +81,10 @@ ExtractionPointer GeometryCache::extract(const GeometrySource& source, const Ext
   if (source.textured)
   {
     writeTextureCoordinates(source.input, pointOf, *geometry);
+  }
+  if (source.edges)
+  {
+    writeSides(source.input, pointOf, *geometry);
   }
   nameOriginalCells(source.originalCells, *geometry);
 

@@ -45,6 +45,7 @@ struct GeometrySource
   bool flat = false;  // vtkProperty's interpolation, which selects the normals
   bool plain = false; // scalars do not count
   bool textured = false; // texture coordinates are wanted
+  bool edges = false;    // its edges are shown
 };
 
 // For a geometry that is made outside of the cache: unique among all.
@@ -63,7 +64,7 @@ public:
   void endFrame();
 
 private:
-  using Signature = std::tuple<const void*, vtkMTimeType, const void*, vtkMTimeType, bool, bool, bool>;
+  using Signature = std::tuple<const void*, vtkMTimeType, const void*, vtkMTimeType, bool, bool, bool, bool>;
   struct Record
   {
     vtkWeakPointer<vtkActor> actor; // another one may come to live at its address

@@ -11,8 +11,17 @@
 #include "vtkInformationIntegerKey.h"
 #include "vtkProperty.h"
 
+#include "vtkVersion.h"
+
 #include <algorithm>
 #include <cmath>
+
+// Edges have an opacity of their own since VTK 9.3.
+#if VTK_VERSION_NUMBER >= VTK_VERSION_CHECK(9, 3, 0)
+#define HRT_EDGE_OPACITY 1
+#else
+#define HRT_EDGE_OPACITY 0
+#endif
 
 namespace hrt
 {
@@ -20,6 +29,9 @@ namespace scene
 {
 namespace
 {
+
+// VTK's mapper draws no edge thinner than this, in pixels.
+constexpr float kLeastEdgeWidth = 1.1f;
 
 //------------------------------------------------------------------------------
 template <class Key, class Value>
@@ -64,6 +76,20 @@ PhongTerms phongTerms(vtkProperty* property)
   return terms;
 }
 
+//------------------------------------------------------------------------------
+EdgeStyle edgeStyle(vtkProperty* property)
+{
+  EdgeStyle style;
+  style.visible = property->GetEdgeVisibility() != 0;
+  style.color = toColor(property->GetEdgeColor());
+#if HRT_EDGE_OPACITY
+  style.opacity = static_cast<float>(property->GetEdgeOpacity());
+#endif
+  style.width = std::max(property->GetLineWidth(), kLeastEdgeWidth);
+  style.tubes = property->GetRenderLinesAsTubes();
+  return style;
+}
+
 } // anonymous namespace
 
 //------------------------------------------------------------------------------
@@ -95,6 +121,7 @@ Material extractMaterial(vtkActor* actor, const RayKeys& keys, ColorSource color
   apply(overrides, material.front);
   apply(overrides, material.back);
   material.lit = property->GetLighting();
+  material.edges = edgeStyle(property);
   material.cullFront = property->GetFrontfaceCulling() != 0;
   material.cullBack = property->GetBackfaceCulling() != 0;
   material.reflectance = static_cast<float>(keys.reflectance);

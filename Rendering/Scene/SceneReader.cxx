@@ -274,6 +274,7 @@ ExtractionPointer SceneReader::extract(const ActorPath& path, const SurfacePiece
   source.flat = path.actor->GetProperty()->GetInterpolation() == VTK_FLAT;
   source.plain = piece.overrides.color;
   source.textured = textured;
+  source.edges = path.actor->GetProperty()->GetEdgeVisibility() != 0;
   bool fresh = false;
   ExtractionPointer extraction = this->Geometries.get(key, source, fresh);
   add(extraction->report, refusals);

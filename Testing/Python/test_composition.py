@@ -66,10 +66,6 @@ def wireframe():
     return ball(0.4, 0.6, Representation=1, Color=(0.1, 0.9, 0.1))
 
 
-def edges():
-    return ball(-0.4, 0.4, EdgeVisibility=True, Color=(0.9, 0.4, 0.4))
-
-
 def mip_mapped():
     canvas = vtkImageCanvasSource2D()
     canvas.SetScalarTypeToUnsignedChar()
@@ -126,7 +122,7 @@ def volume(mapper=None):
     return actor
 
 
-GUESTS = [lines, points, wireframe, edges, mip_mapped, translucent, physically_based, text, volume]
+GUESTS = [lines, points, wireframe, mip_mapped, translucent, physically_based, text, volume]
 
 
 def compare(renderer, render):
@@ -163,7 +159,7 @@ def test_assembly_with_a_part_that_vtk_draws(render):
     """Nothing of it is drawn twice: its traced part would be overdrawn without its shadow."""
     assembly = scenes.vtkAssembly()
     assembly.AddPart(ball())
-    assembly.AddPart(edges())
+    assembly.AddPart(mip_mapped())
     assembly.SetPosition(0.2, 0.1, 0)
     renderer = scenes.renderer_of(assembly, ball(-0.9, 0.3))
     scenes.look(renderer, (0.6, 1.2, 4))

@@ -394,7 +394,7 @@ def test_a_scene_without_textures_keeps_its_shader(render):
     renderer.SetPass(rt)
     render(renderer)
     texels = 6 * 8 * 4
-    assert statistics(rt)["surfaces"] == {"textured": 1, "texels": 6 * 8}
+    assert statistics(rt)["surfaces"] == {"textured": 1, "texels": 6 * 8, "with_edges": 0}
     first = statistics(rt)["bytes_uploaded"]
     actor.GetProperty().SetDiffuse(0.7)
     render(renderer)
@@ -404,7 +404,7 @@ def test_a_scene_without_textures_keeps_its_shader(render):
     assert statistics(rt)["bytes_uploaded"] == texels < first
     actor.SetTexture(None)
     render(renderer)
-    assert statistics(rt)["surfaces"] == {"textured": 0, "texels": 0}
+    assert statistics(rt)["surfaces"] == {"textured": 0, "texels": 0, "with_edges": 0}
 
 
 def test_another_image_is_seen_at_once(render):

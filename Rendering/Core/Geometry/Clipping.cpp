@@ -67,6 +67,7 @@ private:
     Geometry left = mesh;
     left.triangles.clear();
     left.cellIds = CellIds();
+    left.sides.clear();
     dropTriangleValues(left.normals);
     dropTriangleValues(left.colors);
     dropTriangleValues(left.coordinates);
@@ -108,27 +109,38 @@ private:
   {
     const std::array<std::uint32_t, 3>& corners = this->From.triangles[triangle];
     std::array<std::uint32_t, 4> border{};
+    std::array<bool, 4> edge{}; // whether the border from there to the next is an edge of the cell
     std::size_t count = 0;
+    const auto add = [&](std::uint32_t vertex, bool isEdge) {
+      edge[count] = isEdge;
+      border[count++] = vertex;
+    };
     for (std::size_t k = 0; k < 3; ++k)
     {
       const std::uint32_t a = corners[k], b = corners[(k + 1) % 3];
       const double from = this->Distances[a], to = this->Distances[b];
+      const bool isEdge =
+        !this->From.sides.empty() && this->From.sides[triangle].isEdge(static_cast<int>(k));
       if (from >= 0.0)
       {
-        border[count++] = a;
+        add(a, isEdge && (from > 0.0 || to >= 0.0)); // else the plane's own side begins
       }
       if ((from > 0.0 && to < 0.0) || (from < 0.0 && to > 0.0))
       {
-        border[count++] = this->onEdge(a, b);
+        add(this->onEdge(a, b), isEdge && to > 0.0);
       }
     }
     for (std::size_t k = 1; k + 1 < count; ++k)
     {
-      this->append({ border[0], border[k], border[k + 1] }, triangle);
+      TriangleSides sides;
+      sides.edges = (k == 1 && edge[0] ? 1u : 0u) | (edge[k] ? 2u : 0u) |
+        (k + 2 == count && edge[k + 1] ? 4u : 0u);
+      this->append({ border[0], border[k], border[k + 1] }, triangle, sides);
     }
   }
 
-  void append(const std::array<std::uint32_t, 3>& corners, std::size_t of)
+  void append(
+    const std::array<std::uint32_t, 3>& corners, std::size_t of, const TriangleSides& sides)
   {
     const auto at = [&](std::size_t k) {
       return glm::dvec3(this->Left.positions[corners[k]]);
@@ -139,6 +151,10 @@ private:
     }
     this->Left.triangles.push_back(corners);
     this->Left.cellIds.push_back(this->From.cellIds[of]);
+    if (!this->From.sides.empty())
+    {
+      this->Left.sides.push_back(sides);
+    }
     this->appendTriangleValue(this->Left.normals, this->From.normals, of);
     this->appendTriangleValue(this->Left.colors, this->From.colors, of);
     this->appendTriangleValue(this->Left.coordinates, this->From.coordinates, of);
@@ -225,6 +241,10 @@ Geometry clipped(const Geometry& mesh, const std::vector<ClippingPlane>& planes)
     left = Cut(left, plane).take();
   }
   tidy(left);
+  if (!left.sides.empty())
+  {
+    connectSides(left);
+  }
   return left;
 }
 

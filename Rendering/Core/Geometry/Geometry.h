@@ -4,6 +4,7 @@
 #pragma once
 
 #include "Rendering/Core/Geometry/CellIds.h"
+#include "Rendering/Core/Geometry/Sides.h"
 
 #include <glm/glm.hpp>
 
@@ -62,6 +63,7 @@ struct Geometry
   Attribute<glm::u8vec4> colors;                       // when colorSource == Corner, else empty
   Attribute<glm::vec2> coordinates;                    // when colorSource == Lookup, else empty
   Attribute<glm::vec2> textureCoordinates;             // empty: no texture is shown
+  std::vector<TriangleSides> sides;                    // of the triangles; empty: no edges are shown
   ColorSource colorSource = ColorSource::Property;
 
   std::vector<glm::u8vec4> lookup; // lookupWidth x lookupHeight texels, row by row

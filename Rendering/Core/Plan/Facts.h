@@ -25,6 +25,7 @@ struct Circumstances
 struct SurfaceFeatures
 {
   bool textures = false;
+  bool edges = false;
   bool copies = false; // see Copies.h
 };
 

@@ -27,6 +27,7 @@ using glm::dot;
 using glm::floor;
 using glm::length;
 using glm::max;
+using glm::min;
 using glm::mix;
 using glm::normalize;
 using glm::pow;
@@ -39,6 +40,9 @@ using glm::sign;
 namespace shading64
 {
 using glm::ivec2;
+using glm::ivec4;
+using glm::lessThanEqual;
+using glm::sqrt;
 using vec2 = glm::dvec2;
 using vec3 = glm::dvec3;
 using vec4 = glm::dvec4;
@@ -50,6 +54,7 @@ using glm::dot;
 using glm::floor;
 using glm::length;
 using glm::max;
+using glm::min;
 using glm::mix;
 using glm::normalize;
 using glm::pow;

@@ -67,6 +67,18 @@ HRT_FUNCTION HrtSurface hrtSurface(HrtTerms terms)
   return surface;
 }
 
+// The surface where a share of it is edge: see Edges.glsl. Lines are ambient light alone, tubes take light
+// as the surface does.
+HRT_FUNCTION HrtSurface hrtWithEdges(
+  HrtTerms terms, HrtSurface surface, vec3 edgeColor, real share, bool tubes)
+{
+  HrtSurface mixed = surface;
+  mixed.diffuse =
+    mix(surface.diffuse, tubes ? terms.diffuse * edgeColor : vec3(real(0.0)), share);
+  mixed.ambient = mix(surface.ambient, tubes ? terms.ambient * edgeColor : edgeColor, share);
+  return mixed;
+}
+
 // One of a part's textures; see TextureLookup.glsl.
 struct HrtTexture
 {

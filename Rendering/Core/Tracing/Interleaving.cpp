@@ -94,7 +94,8 @@ Interpolation::Answer Interpolation::at(int column, int row, const std::uint32_t
     const Lattice::Around::Neighbour& neighbour = around.neighbours[i];
     const TileTracer::Note& note = notes[neighbour.sample];
     if (settings.interleaveErrorControl &&
-      (note.part != part || note.signature != notes[around.neighbours[0].sample].signature))
+      (note.part != part || note.detailed ||
+        note.signature != notes[around.neighbours[0].sample].signature))
     {
       return Answer::Trace;
     }

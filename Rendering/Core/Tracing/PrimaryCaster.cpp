@@ -74,7 +74,7 @@ public:
       agreed = agreed && this->Hits.ids[neighbour.pixel] == id;
       depth += static_cast<double>(neighbour.weight) * this->Hits.clipDepths[neighbour.pixel];
     }
-    if (errorControl && !agreed)
+    if (errorControl && (!agreed || this->mayHaveHoles(id)))
     {
       return false;
     }
@@ -89,6 +89,13 @@ public:
   }
 
 private:
+  // Between the points of a triangle there may be a hole of its texture.
+  bool mayHaveHoles(std::uint32_t id) const
+  {
+    const Snapshot& scene = this->Frame.snapshot;
+    return id != 0 && scene.parts[scene.partOf(id - 1)].perforated;
+  }
+
   void add(std::uint32_t pixel, RayCount& count)
   {
     ++count.asked;

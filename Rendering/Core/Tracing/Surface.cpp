@@ -1,7 +1,10 @@
 // Implements surface points. Geometry in double; colours in float, as the shared shading has it.
 #include "Rendering/Core/Tracing/Surface.h"
 
+#include "Rendering/Core/Surface/EdgeLookup.h"
 #include "Rendering/Core/Surface/SurfaceColors.h"
+
+#include <glm/gtc/matrix_transform.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -58,11 +61,55 @@ float opacityOf(const Part& part, float opacity, float texture)
   return part.material.textures.alpha == Texture::Alpha::Opaque ? opacity : opacity * texture;
 }
 
+// VTK mixes edges into the colours before it lights them. `axes`: of the window, x, y and towards the
+// viewer, unit.
+void addEdges(shading64::EdgeLookup& edges, const EdgeStyle& style, const glm::dvec3& nearest,
+  const glm::dmat3& axes, const shading::HrtTerms& terms, SurfacePoint& point)
+{
+  const double mix = edges.hrtEdgeMix(nearest.z, style.width);
+  const float share = style.opacity * static_cast<float>(mix);
+  point.colors =
+    shading::hrtWithEdges(terms, point.colors, style.color, share, style.tubes);
+  point.diffuseColor *= 1.0f - share;
+  point.edgeShare = share;
+  if (style.tubes)
+  {
+    point.normal = axes *
+      edges.hrtTubeNormal(glm::transpose(axes) * point.normal, nearest, style.width, mix);
+  }
+}
+
+glm::dmat4 translation(const glm::dvec3& by)
+{
+  return glm::translate(glm::dmat4(1.0), by);
+}
+
 } // namespace
 
 Surfaces::Surfaces(const Snapshot& snapshot)
   : Scene(snapshot)
+  , ToWindow(snapshot.camera.clipToWindow() * snapshot.camera.viewToClip *
+      (snapshot.camera.worldToView * translation(snapshot.origin)))
 {
+  const glm::dmat3 toWorld = glm::inverse(glm::dmat3(snapshot.camera.worldToView));
+  this->ViewAxes = glm::dmat3(
+    glm::normalize(toWorld[0]), glm::normalize(toWorld[1]), glm::normalize(toWorld[2]));
+  const CameraRays rays = snapshot.camera.worldRays(snapshot.origin);
+  const auto perPixel = [&snapshot](const glm::dvec3& acrossX, const glm::dvec3& acrossY)
+  {
+    // The mean of the two; the coordinates run from -1 to 1, which is twice as far as from 0.
+    return glm::length(acrossX) / snapshot.camera.width +
+      glm::length(acrossY) / snapshot.camera.height;
+  };
+  this->PixelSize = perPixel(rays.originX, rays.originY);
+  const glm::dvec3 axis = glm::cross(rays.directionX, rays.directionY);
+  if (axis != glm::dvec3(0.0))
+  {
+    this->Axis = glm::normalize(axis);
+    this->PixelGrowth = perPixel(rays.directionX, rays.directionY) /
+      std::abs(glm::dot(this->Axis, rays.direction0));
+  }
+
   this->Placements.reserve(snapshot.parts.size());
   for (const Part& part : snapshot.parts)
   {
@@ -119,6 +166,13 @@ bool Surfaces::exactHit(
 
 SurfacePoint Surfaces::at(const Hit& hit, const glm::dvec3& direction) const
 {
+  shading::HrtTerms terms;
+  return this->evaluate(hit, direction, terms);
+}
+
+SurfacePoint Surfaces::evaluate(
+  const Hit& hit, const glm::dvec3& direction, shading::HrtTerms& terms) const
+{
   SurfacePoint point;
   point.triangle = hit.triangle;
   point.part = this->Scene.partOf(hit.triangle);
@@ -145,12 +199,79 @@ SurfacePoint Surfaces::at(const Hit& hit, const glm::dvec3& direction) const
 
   shading::SurfaceColors colors(part, triangle, part.copyOf(hit.triangle));
   const float u = static_cast<float>(hit.u), v = static_cast<float>(hit.v);
-  const shading::HrtTerms terms = colors.hrtTermsAt(u, v, point.frontSide);
+  terms = colors.hrtTermsAt(u, v, point.frontSide);
   const glm::vec4 texture = colors.textureColor(u, v, point.frontSide);
   point.colors = shading::hrtSurface(terms);
   point.textureColor = glm::vec3(texture);
   point.diffuseColor = terms.diffuseColor * point.textureColor;
   point.opacity = opacityOf(part, terms.opacity, texture.a);
+  return point;
+}
+
+SurfacePoint Surfaces::seenAtPixel(
+  const Hit& hit, const glm::dvec3& direction, const glm::dvec2& centre) const
+{
+  const std::size_t index = this->Scene.partOf(hit.triangle);
+  const Part& part = this->Scene.parts[index];
+  if (!part.showsEdges())
+  {
+    return this->at(hit, direction);
+  }
+  Placement scratch;
+  const glm::dmat4 toWindow = translation({ -centre, 0.0 }) * this->ToWindow *
+    this->placementOf(index, hit.triangle, scratch).toScene;
+  const Material& material = part.material;
+  shading64::EdgeLookup edges(*part.geometry, toWindow);
+  const auto local = static_cast<TriangleId>(part.indexOf(hit.triangle));
+  const auto seen = edges.hrtEdgeHit(static_cast<int>(local), { hit.u, hit.v },
+    material.edges.width, material.cullFront || material.cullBack);
+  Hit shown = hit;
+  shown.triangle = hit.triangle - local + static_cast<TriangleId>(seen.triangle);
+  shown.u = seen.uv.x;
+  shown.v = seen.uv.y;
+  shading::HrtTerms terms;
+  SurfacePoint point = this->evaluate(shown, direction, terms);
+  addEdges(edges, material.edges, seen.nearest, this->ViewAxes, terms, point);
+  return point;
+}
+
+Way Surfaces::beginning(const glm::dvec3& direction, double length) const
+{
+  Way way;
+  way.cosine = this->Axis == glm::dvec3(0.0) ? 1.0 : std::abs(glm::dot(this->Axis, direction));
+  way.add(length);
+  return way;
+}
+
+SurfacePoint Surfaces::seenFrom(
+  const Hit& hit, const glm::dvec3& direction, const Way& way) const
+{
+  shading::HrtTerms terms;
+  SurfacePoint point = this->evaluate(hit, direction, terms);
+  const Part& part = this->Scene.parts[point.part];
+  if (!part.showsEdges())
+  {
+    return point;
+  }
+  // A window across the ray, about the point where it meets the surface.
+  const glm::dvec3 d = glm::normalize(direction);
+  const glm::dvec3 size = glm::abs(d);
+  const glm::dvec3 other = size.x <= size.y && size.x <= size.z ? glm::dvec3(1, 0, 0)
+    : size.y <= size.z                                          ? glm::dvec3(0, 1, 0)
+                                                                : glm::dvec3(0, 0, 1);
+  const glm::dvec3 x = glm::normalize(glm::cross(d, other)), y = glm::cross(d, x);
+  const double growth = this->PixelGrowth * way.cosine;
+  const double pixel = this->PixelSize + this->PixelGrowth * way.depth;
+  const glm::dmat4 across = glm::transpose(glm::dmat4(glm::dvec4(x, 0.0), glm::dvec4(y, 0.0),
+    glm::dvec4(0.0), glm::dvec4(growth * d, pixel)));
+  Placement scratch;
+  const glm::dmat4 toWindow = across * translation(-point.position) *
+    this->placementOf(point.part, hit.triangle, scratch).toScene;
+  shading64::EdgeLookup edges(*part.geometry, toWindow);
+  const EdgeStyle& style = part.material.edges;
+  addEdges(edges, style,
+    edges.nearestOf(static_cast<int>(part.indexOf(hit.triangle)), style.width),
+    glm::dmat3(x, y, -d), terms, point);
   return point;
 }
 

@@ -31,12 +31,23 @@ struct SurfacePoint
   bool outside = true;
 
   shading::HrtSurface colors{};
+  float edgeShare = 0.0f; // of the edges' colour, which is in `colors` already
   glm::vec3 textureColor{ 1.0f }; // multiplies what is shaded
   glm::vec3 diffuseColor{ 1.0f }; // without its coefficient, textured: the tint of glass
   float opacity = 1.0f;           // 0 in a hole
 
   // How far rounding may have put `position` off the triangle, generously: see Surface.cpp.
   double positionError = 0.0;
+};
+
+// How far a ray has come from the camera. Lengths count along the camera's axis, as depths in the window:
+// a pixel at the window's border is as wide as one in its middle.
+struct Way
+{
+  double depth = 0.0;
+  double cosine = 1.0; // of the primary ray to the axis
+
+  void add(double length) { this->depth += this->cosine * length; }
 };
 
 // The parts of one snapshot, placed. The snapshot must outlive it and stay as it is.
@@ -55,6 +66,16 @@ public:
   // The surface at a hit, as seen along the ray's direction.
   SurfacePoint at(const Hit& hit, const glm::dvec3& direction) const;
 
+  // The same with the edges that the surface shows: at the centre of a pixel of the camera's, counted in
+  // pixels from the lower left, where another triangle of the surface may be seen ...
+  SurfacePoint seenAtPixel(
+    const Hit& hit, const glm::dvec3& direction, const glm::dvec2& centre) const;
+  // ... or by a ray that has come some way from the camera, over mirrors and through glass: edges are as
+  // wide as they were in the window if that way were straight.
+  SurfacePoint seenFrom(const Hit& hit, const glm::dvec3& direction, const Way& way) const;
+  // The way of a primary ray of unit direction.
+  Way beginning(const glm::dvec3& direction, double length) const;
+
   // Whether the surface has a hole there.
   bool isHole(const Hit& hit, const glm::dvec3& direction) const;
 
@@ -69,9 +90,18 @@ private:
   static Placement placement(const Part& part, const glm::dvec3& origin, std::size_t copy);
   // Of the copy that the triangle belongs to; `scratch` holds it where there is no table.
   const Placement& placementOf(std::size_t part, TriangleId id, Placement& scratch) const;
+  // at(), with the terms that the colours are made from.
+  SurfacePoint evaluate(
+    const Hit& hit, const glm::dvec3& direction, shading::HrtTerms& terms) const;
 
   const Snapshot& Scene;
   std::vector<Placement> Placements; // one a part, of its first copy
+  glm::dmat3 ViewAxes; // of the view coordinates, unit
+  glm::dmat4 ToWindow; // from coordinates relative to the scene's origin; pixels and depth, times w
+  // A pixel's size at the camera, and by how much it grows with depth.
+  double PixelSize = 0.0;
+  double PixelGrowth = 0.0;
+  glm::dvec3 Axis{ 0.0 }; // unit; zero where all rays are parallel
 };
 
 // The same for a single pixel, without a table.

@@ -70,6 +70,12 @@ Ray TracedFrame::primaryRay(std::uint32_t pixel) const
   return ray;
 }
 
+glm::dvec2 TracedFrame::centreOf(std::uint32_t pixel) const
+{
+  const auto width = static_cast<std::uint32_t>(this->snapshot.camera.width);
+  return { pixel % width + 0.5, pixel / width + 0.5 };
+}
+
 TileTracer::TileTracer(const TracedFrame& frame)
   : Frame(frame)
 {
@@ -84,6 +90,7 @@ void TileTracer::trace(const std::vector<std::uint32_t>& pixels, Wanted wanted,
   this->Alphas.assign(pixels.size(), wanted == Wanted::Everything ? 0.0f : 1.0f);
   this->Parts.assign(pixels.size(), kNoPart);
   this->Missed.assign(pixels.size(), 0);
+  this->Detailed.assign(pixels.size(), 0);
   this->Signatures.assign(pixels.size(), 0);
   this->Counters = RayCounters();
   for (std::size_t i = 0; i < pixels.size(); ++i)
@@ -112,7 +119,8 @@ void TileTracer::trace(const std::vector<std::uint32_t>& pixels, Wanted wanted,
 
 TileTracer::Note TileTracer::note(std::size_t index) const
 {
-  return { this->Parts[index], this->Missed[index] != 0, this->Signatures[index] };
+  return { this->Parts[index], this->Missed[index] != 0, this->Detailed[index] != 0,
+    this->Signatures[index] };
 }
 
 // Whether one of the triangles that the pixel may turn out to show is a mirror's or glass.
@@ -144,7 +152,8 @@ void TileTracer::start(std::uint32_t index, std::uint32_t pixel, Wanted wanted,
   {
     return;
   }
-  const SurfacePoint point = this->Frame.surfaces.at(hit, ray.direction);
+  const SurfacePoint point =
+    this->Frame.surfaces.seenAtPixel(hit, ray.direction, this->Frame.centreOf(pixel));
   const Material& material = *point.material;
   const bool mirror = this->Frame.isMirror(material);
   const bool optics = mirror || this->Frame.isGlass(material);
@@ -157,6 +166,7 @@ void TileTracer::start(std::uint32_t index, std::uint32_t pixel, Wanted wanted,
   this->Parts[index] = static_cast<std::uint32_t>(point.part);
   Path eye;
   eye.pixel = index;
+  eye.way = this->Frame.surfaces.beginning(ray.direction, hit.t);
   if (wanted == Wanted::SecondaryOnly && mirror)
   {
     this->Alphas[index] = 1.0f - material.reflectance;
@@ -186,6 +196,7 @@ void TileTracer::spawn(
   next.pixel = path.pixel;
   next.weight = path.weight * share;
   next.bounces = path.bounces + 1;
+  next.way = path.way;
   queue.rays.push_back(ray);
   queue.paths.push_back(next);
 }
@@ -213,15 +224,16 @@ void TileTracer::follow(PathQueue& queue, Kind kind, RayCount& count, RayOrder o
   this->Frame.structure.intersect(queue.rays.data(), this->Hits.data(), kept, order);
   for (std::size_t i = 0; i < kept; ++i)
   {
-    const Path& path = queue.paths[i];
+    Path& path = queue.paths[i];
     const glm::dvec3 direction = queue.rays[i].direction;
     if (!this->Hits[i].valid())
     {
       this->addBackground(direction, path, path.weight);
       continue;
     }
-    this->arrive(
-      this->Frame.surfaces.at(this->Hits[i], direction), direction, -direction, path, kind);
+    path.way.add(this->Hits[i].t);
+    this->arrive(this->Frame.surfaces.seenFrom(this->Hits[i], direction, path.way), direction,
+      -direction, path, kind);
   }
   queue.clear();
 }
@@ -235,6 +247,10 @@ void TileTracer::arrive(const SurfacePoint& point, const glm::dvec3& direction,
                                             : PathEvent::Refracted;
   this->Signatures[path.pixel] +=
     signatureOf(event, path.bounces, point.part, point.frontSide ? 1 : 0);
+  if (this->Frame.snapshot.parts[point.part].hasDetail())
+  {
+    this->Detailed[path.pixel] = 1;
+  }
   if (this->Frame.isGlass(*point.material))
   {
     this->arriveAtGlass(point, direction, toViewer, path);
@@ -288,10 +304,15 @@ void TileTracer::arriveAtGlass(const SurfacePoint& point, const glm::dvec3& dire
     this->Shadows, this->Counters.shadow);
   const bool reflections = this->Frame.settings.reflections;
   const auto reflectance = static_cast<float>(boundary.reflectance);
+  if (point.edgeShare > 0.0f) // edges are painted on
+  {
+    this->Sums[path.pixel] +=
+      path.weight * point.edgeShare * point.material->edges.color * point.textureColor;
+  }
   if (reflections)
   {
-    this->spawn(
-      this->Reflected, leave(point, boundary.reflected), path, glm::vec3(reflectance));
+    this->spawn(this->Reflected, leave(point, boundary.reflected), path,
+      glm::vec3(reflectance * (1.0f - point.edgeShare)));
   }
   if (boundary.reflectance < 1.0)
   {

@@ -29,6 +29,8 @@ struct TracedFrame
 
   // The primary ray through the centre of a pixel, row 0 at the bottom; unit direction.
   Ray primaryRay(std::uint32_t pixel) const;
+  // That centre, in pixels from the picture's lower left corner.
+  glm::dvec2 centreOf(std::uint32_t pixel) const;
 
   const Snapshot& snapshot;
   const Structure& structure;
@@ -51,6 +53,8 @@ public:
     // Of the surface that the pixel shows; kNoPart when it shows none whose light is wanted.
     std::uint32_t part = kNoPart;
     bool missed = false; // see FirstHits
+    // Something on its paths has a texture or edges: what lies beside it may look different.
+    bool detailed = false;
     PathSignature signature = 0;
   };
   static constexpr std::uint32_t kNoPart = 0xffffffff;
@@ -72,6 +76,7 @@ private:
     std::uint32_t pixel = 0;  // index into the tile's list
     int bounces = 0;          // reflections and refractions so far
     int layers = 0;           // translucent surfaces passed since the last of them
+    Way way;                  // from the camera to where the ray starts
   };
   struct PathQueue
   {
@@ -111,6 +116,7 @@ private:
   std::vector<float> Alphas;
   std::vector<std::uint32_t> Parts;
   std::vector<std::uint8_t> Missed;
+  std::vector<std::uint8_t> Detailed;
   std::vector<PathSignature> Signatures;
   PathQueue Reflected, Refracted;         // rays of the generation to come
   PathQueue NowReflected, NowRefracted;   // of the one being traced

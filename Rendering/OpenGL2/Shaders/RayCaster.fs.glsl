@@ -56,14 +56,91 @@ float lightVisibility(int index, HrtLight light, vec3 p, vec3 ng, float folds)
   return hrtLightVisibility(int(t4.x), int(t4.y), light, p, ng, folds);
 }
 
-// Where the data of the triangle at hand lie, for what the shared source of colours asks for.
+// Where the data of the triangle at hand lie, for what the shared sources ask for.
 int partNumber;
 ivec4 partBases;  // first triangle, normals, colours, coordinates
 ivec4 partLookup; // start, width, height; first vertex
-ivec4 partMore;   // whether normals and colours are the triangles'; texture coordinates
+ivec4 partMore;   // whether normals and colours are the triangles'; texture coordinates; sides
+int firstPlace;   // of the part's triangles in the tables
 int triangleInPart;
 ivec3 verticesInPart;
 int colorSource;
+mat4x3 positionToView;
+
+#ifdef HRT_COPIES
+uniform int firstCopied; // number of the first triangle of a part with copies; these parts come last
+uniform int lastPart;
+int firstTexelOfCopy; // its rows and colour among the positions
+bool copied;
+bool copyIsColored = false;
+mat4x3 copyPlace;
+
+// From a triangle's number to its place in the tables, with its part and its copy.
+int placeOf(int triangle, out int part)
+{
+  copied = triangle >= firstCopied;
+  if (!copied)
+  {
+    part = int(texelFetch(trianglePart, triangle).r);
+    return triangle;
+  }
+  part = lastPart;
+  while (texelFetch(partLayout, part * LAYOUT_TEXELS).x > triangle)
+  {
+    --part;
+  }
+  int local = triangle - texelFetch(partLayout, part * LAYOUT_TEXELS).x;
+  ivec4 mesh = texelFetch(partLayout, part * LAYOUT_TEXELS + 3); // place, triangles, first, texels
+  firstTexelOfCopy = mesh.z + local / mesh.y * mesh.w;
+  copyIsColored = mesh.w == 4;
+  copyPlace = fetchMatrix(positions, firstTexelOfCopy);
+  return mesh.x + local % mesh.y;
+}
+
+// The inverse transpose but for a positive factor, which a direction does not have.
+mat3 copyNormals()
+{
+  return mat3(cross(copyPlace[1], copyPlace[2]), cross(copyPlace[2], copyPlace[0]),
+    cross(copyPlace[0], copyPlace[1])) *
+    sign(dot(copyPlace[0], cross(copyPlace[1], copyPlace[2])));
+}
+#endif
+
+// The vertices of one of the part's triangles among all. The last corner of the i-th is the i-th vertex.
+ivec3 verticesOf(int triangle)
+{
+  int at = 3 * (firstPlace + triangle);
+  return ivec3(int(texelFetch(indices, at).r), int(texelFetch(indices, at + 1).r),
+    partLookup.w + triangle);
+}
+
+vec3 cornerInView(int vertex)
+{
+  vec4 local = texelFetch(positions, vertex);
+#ifdef HRT_COPIES
+  if (copied)
+  {
+    local = vec4(copyPlace * local, 1.0);
+  }
+#endif
+  return positionToView * local;
+}
+
+// A triangle's corners in view coordinates.
+struct Corners
+{
+  vec3 a;
+  vec3 b;
+  vec3 c;
+};
+
+Corners readyTriangle(int triangle)
+{
+  triangleInPart = triangle;
+  ivec3 vertices = verticesOf(triangle);
+  verticesInPart = vertices - partLookup.w;
+  return Corners(cornerInView(vertices.x), cornerInView(vertices.y), cornerInView(vertices.z));
+}
 
 // The places of an attribute's values at the corners; `base`: of the part's first one.
 ivec3 cornersFrom(int base, bool ofTriangles)
@@ -81,34 +158,6 @@ HrtTerms fetchTerms(bool front)
     ambient.rgb, diffuse.rgb, specular.rgb, ambient.w, diffuse.w, specular.w, 1.0);
 }
 
-#ifdef HRT_COPIES
-uniform int firstCopied; // number of the first triangle of a part with copies; these parts come last
-uniform int lastPart;
-int firstTexelOfCopy; // its rows and colour among the positions
-bool copyIsColored = false;
-
-// From a triangle's number to its place in the tables, with its part and its copy.
-int placeOf(int triangle, out int part, out bool copied)
-{
-  copied = triangle >= firstCopied;
-  if (!copied)
-  {
-    part = int(texelFetch(trianglePart, triangle).r);
-    return triangle;
-  }
-  part = lastPart;
-  while (texelFetch(partLayout, part * LAYOUT_TEXELS).x > triangle)
-  {
-    --part;
-  }
-  int local = triangle - texelFetch(partLayout, part * LAYOUT_TEXELS).x;
-  ivec4 mesh = texelFetch(partLayout, part * LAYOUT_TEXELS + 3); // place, triangles, first, texels
-  firstTexelOfCopy = mesh.z + local / mesh.y * mesh.w;
-  copyIsColored = mesh.w == 4;
-  return mesh.x + local % mesh.y;
-}
-#endif
-
 #define HRT_COLOR_SOURCE colorSource
 #define HRT_TERMS(side) fetchTerms(side)
 #define HRT_CORNER_COLOR(k) texelFetch(colors, cornersFrom(partBases.z, partMore.y == 1)[k])
@@ -123,8 +172,43 @@ int placeOf(int triangle, out int part, out bool copied)
 #define HRT_COLOR_ONE 1.0
 //HRT::SurfaceColors
 
+void readyPart(int part)
+{
+  partNumber = part;
+  partBases = texelFetch(partLayout, part * LAYOUT_TEXELS);
+  partLookup = texelFetch(partLayout, part * LAYOUT_TEXELS + 1);
+  partMore = texelFetch(partLayout, part * LAYOUT_TEXELS + 2);
+  firstPlace = partBases.x;
+  colorSource = partBases.z >= 0 ? HRT_COLOR_OF_CORNERS
+    : partBases.w >= 0           ? HRT_COLOR_OF_LOOKUP
+                                 : HRT_COLOR_OF_PROPERTY;
+#ifdef HRT_COPIES
+  firstPlace = texelFetch(partLayout, part * LAYOUT_TEXELS + 3).x;
+  if (copyIsColored)
+  {
+    colorSource = HRT_COLOR_OF_COPY;
+  }
+#endif
+  positionToView = fetchMatrix(partTable, part * PART_TEXELS);
+}
+
 #ifdef HRT_TEXTURES
 //HRT::Textures
+#endif
+
+#ifdef HRT_EDGES
+uniform isamplerBuffer triangleSides;
+uniform mat4 viewToWindow; // pixels from the picture's corner and depth, times w
+
+vec4 windowCorner(int triangle, int k)
+{
+  vec4 corner = viewToWindow * vec4(cornerInView(verticesOf(triangle)[k]), 1.0);
+  return vec4(corner.xy - gl_FragCoord.xy * corner.w, corner.zw);
+}
+
+#define HRT_SIDES(triangle) texelFetch(triangleSides, partMore.w + (triangle))
+#define HRT_WINDOW_CORNER(triangle, k) windowCorner(triangle, k)
+//HRT::Edges
 #endif
 
 vec4 shadeHit(uvec4 hit)
@@ -132,55 +216,13 @@ vec4 shadeHit(uvec4 hit)
   int triangle = int(hit.x - 1u);
 #ifdef HRT_COPIES
   int part;
-  bool copied;
-  triangle = placeOf(triangle, part, copied);
+  triangle = placeOf(triangle, part);
 #else
   int part = int(texelFetch(trianglePart, triangle).r);
 #endif
-  partNumber = part;
-  partBases = texelFetch(partLayout, part * LAYOUT_TEXELS);
-  partLookup = texelFetch(partLayout, part * LAYOUT_TEXELS + 1);
-  partMore = texelFetch(partLayout, part * LAYOUT_TEXELS + 2);
-#ifdef HRT_COPIES
-  triangleInPart = triangle - texelFetch(partLayout, part * LAYOUT_TEXELS + 3).x;
-#else
-  triangleInPart = triangle - partBases.x;
-#endif
-  // The last corner of a part's i-th triangle is its i-th vertex.
-  ivec3 vertices = ivec3(int(texelFetch(indices, 3 * triangle).r),
-    int(texelFetch(indices, 3 * triangle + 1).r), partLookup.w + triangleInPart);
-  verticesInPart = vertices - partLookup.w;
-  colorSource = partBases.z >= 0 ? HRT_COLOR_OF_CORNERS
-    : partBases.w >= 0           ? HRT_COLOR_OF_LOOKUP
-                                 : HRT_COLOR_OF_PROPERTY;
-#ifdef HRT_COPIES
-  if (copyIsColored)
-  {
-    colorSource = HRT_COLOR_OF_COPY;
-  }
-#endif
+  readyPart(part);
   vec4 flags = texelFetch(partTable, part * PART_TEXELS + 12); // lit, folds, textures: on back
-
-  mat4x3 positionToView = fetchMatrix(partTable, part * PART_TEXELS);
-  vec4 localA = texelFetch(positions, vertices.x);
-  vec4 localB = texelFetch(positions, vertices.y);
-  vec4 localC = texelFetch(positions, vertices.z);
-#ifdef HRT_COPIES
-  mat3 copyNormals = mat3(1.0);
-  if (copied)
-  {
-    mat4x3 place = fetchMatrix(positions, firstTexelOfCopy);
-    localA = vec4(place * localA, 1.0);
-    localB = vec4(place * localB, 1.0);
-    localC = vec4(place * localC, 1.0);
-    // The inverse transpose but for a positive factor, which a direction does not have.
-    copyNormals = mat3(cross(place[1], place[2]), cross(place[2], place[0]),
-      cross(place[0], place[1])) * sign(dot(place[0], cross(place[1], place[2])));
-  }
-#endif
-  vec3 a = positionToView * localA;
-  vec3 b = positionToView * localB;
-  vec3 c = positionToView * localC;
+  Corners corners = readyTriangle(triangle - firstPlace);
 
   vec2 ndc = gl_FragCoord.xy / viewportSize * 2.0 - 1.0;
   vec3 origin = rayOrigin0 + ndc.x * rayOriginX + ndc.y * rayOriginY;
@@ -193,9 +235,28 @@ vec4 shadeHit(uvec4 hit)
   }
   else
   {
-    vec3 tuv = hrtIntersectPlane(origin, direction, a, b, c);
+    vec3 tuv = hrtIntersectPlane(origin, direction, corners.a, corners.b, corners.c);
     uv = hrtClampBarycentrics(tuv.y, tuv.z);
   }
+#ifdef HRT_EDGES
+  vec4 edgeColor = vec4(0.0); // and its opacity
+  vec4 edgeStyle = vec4(1.0, 0.0, 0.0, 0.0); // width, culled, tubes
+  vec3 nearestEdge = vec3(0.0);
+  real edgeMix = 0.0;
+  if (partMore.w >= 0)
+  {
+    edgeColor = texelFetch(partTable, part * PART_TEXELS + 16);
+    edgeStyle = texelFetch(partTable, part * PART_TEXELS + 17);
+    HrtEdgeHit seen = hrtEdgeHit(triangleInPart, uv, edgeStyle.x, edgeStyle.y == 1.0);
+    corners = readyTriangle(seen.triangle);
+    uv = seen.uv;
+    nearestEdge = seen.nearest;
+    edgeMix = hrtEdgeMix(nearestEdge.z, edgeStyle.x);
+  }
+#endif
+  vec3 a = corners.a;
+  vec3 b = corners.b;
+  vec3 c = corners.c;
   vec3 p = hrtInterpolate3(a, b, c, uv.x, uv.y);
 
   HrtSides sides = hrtSides(a, b, c, direction);
@@ -208,7 +269,7 @@ vec4 shadeHit(uvec4 hit)
       texelFetch(partTable, part * PART_TEXELS + 4).xyz,
       texelFetch(partTable, part * PART_TEXELS + 5).xyz);
 #ifdef HRT_COPIES
-    toView = toView * copyNormals;
+    toView = copied ? toView * copyNormals() : toView;
 #endif
     n = hrtSmoothNormal(toView * hrtInterpolate3(fetchVector(normals, at.x),
       fetchVector(normals, at.y), fetchVector(normals, at.z), uv.x, uv.y),
@@ -220,7 +281,16 @@ vec4 shadeHit(uvec4 hit)
     return vec4(lightVisibility(shadowLight, fetchLight(shadowLight), p, ng, flags.y));
   }
 
-  HrtSurface surface = hrtSurface(hrtTermsAt(uv.x, uv.y, sides.front));
+  HrtTerms terms = hrtTermsAt(uv.x, uv.y, sides.front);
+  HrtSurface surface = hrtSurface(terms);
+#ifdef HRT_EDGES
+  surface =
+    hrtWithEdges(terms, surface, edgeColor.rgb, edgeColor.w * edgeMix, edgeStyle.z == 1.0);
+  if (edgeStyle.z == 1.0)
+  {
+    n = hrtTubeNormal(n, nearestEdge, edgeStyle.x, edgeMix);
+  }
+#endif
   vec3 color = hrtUnlit(surface);
   if (flags.x == 1.0 && unlitScene == 0)
   {

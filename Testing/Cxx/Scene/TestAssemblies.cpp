@@ -178,12 +178,12 @@ TEST_F(Assemblies, HandTheirMaterialToPartsWithoutOne)
 TEST_F(Assemblies, WithOnePartLeftToVTKAreLeftWhole)
 {
   auto plain = makeActor(makeSquare());
-  auto wire = makeActor(makeSquare());
-  wire->GetProperty()->EdgeVisibilityOn();
+  auto pane = makeActor(makeSquare());
+  pane->GetProperty()->SetOpacity(0.5);
   auto alone = makeActor(makeSquare());
   vtkNew<vtkAssembly> assembly;
   assembly->AddPart(plain);
-  assembly->AddPart(wire);
+  assembly->AddPart(pane);
   this->renderer->AddActor(assembly);
   this->renderer->AddActor(alone);
   const hrt::Snapshot& s = this->update();

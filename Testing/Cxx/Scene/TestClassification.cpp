@@ -147,10 +147,12 @@ TEST_F(Classification, TexturesThatAreNotTraced)
   this->expectTraced();
 }
 
-TEST_F(Classification, Edges)
+TEST_F(Classification, EdgesAreTraced)
 {
   this->property->EdgeVisibilityOn();
-  this->expectLeftButSeen("edges", true);
+  this->expectTraced();
+  this->property->RenderLinesAsTubesOn();
+  this->expectTraced();
 }
 
 TEST_F(Classification, PhysicallyBased)
