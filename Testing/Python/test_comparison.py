@@ -338,7 +338,7 @@ def test_more_memory_is_called_more():
 
 def bench(*arguments):
     return subprocess.run([sys.executable, str(BENCHMARKS / "bench.py"), *arguments], check=False,
-                          stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, timeout=300)
+                          stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
 
 
 def test_command_compares_this_build_with_itself(tmp_path):
