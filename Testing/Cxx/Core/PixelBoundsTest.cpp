@@ -120,8 +120,8 @@ TEST(PixelFrustum, LeavesOutOnlyWhatNoPixelShows)
     s.camera = scenes::perspective({ 0, 0, 10 }, { 0, 0, 0 }, kWidth, kHeight, 40.0);
     const glm::vec3 centre(across(random), across(random), across(random));
     const auto corner = [&] { return centre + glm::vec3(size(random), size(random), size(random)); };
-    const Part& part = scenes::addPart(
-      s, scenes::makeGeometry({ corner(), corner(), corner() }), glm::dmat4(1.0));
+    scenes::addPart(s, scenes::makeGeometry({ corner(), corner(), corner() }), glm::dmat4(1.0));
+    const Part& part = s.parts.back();
     double low[2], high[2];
     ASSERT_TRUE(columnsAndRows(s, part, low, high));
     for (int tile = 0; tile < 16; ++tile)
@@ -160,7 +160,8 @@ TEST(PixelFrustum, NothingIsInEmptyBounds)
 {
   Snapshot s;
   s.camera = scenes::perspective({ 0, 0, 10 }, { 0, 0, 0 }, kWidth, kHeight, 40.0);
-  const Part& ball = scenes::addPart(s, scenes::sphere(8, 4));
+  scenes::addPart(s, scenes::sphere(8, 4));
+  const Part& ball = s.parts.back();
   EXPECT_TRUE(PixelFrustum(s.camera, PixelBounds()).mayShow(ball));
   EXPECT_FALSE(PixelFrustum(s.camera, bounds(5, 5, 0, 9)).mayShow(ball));
   EXPECT_FALSE(PixelFrustum(s.camera, bounds(0, 99, 48, 99)).mayShow(ball));
