@@ -264,7 +264,7 @@ def test_silhouettes_are_left_out_of_parity_for_this_reason(render):
     expected = render(renderer, (400, 300)).astype(int)
     rt = vtkHybridRayTracingPass()
     rt.SetShadowModeToOff()
-    rt.SetBuffers(["prop", "position", "normal"])
+    rt.SetBuffers(["prop", "block", "glyph", "position", "normal"])
     renderer.SetPass(rt)
     shown = render(renderer, (400, 300)).astype(int)
     different = np.abs(shown - expected).max(axis=2) > 1
