@@ -90,6 +90,24 @@ EdgeStyle edgeStyle(vtkProperty* property)
   return style;
 }
 
+//------------------------------------------------------------------------------
+PhysicalTerms physicalTerms(vtkProperty* property)
+{
+  PhysicalTerms terms;
+  terms.used = property->GetInterpolation() == VTK_PBR && property->GetLighting();
+  terms.metallic = static_cast<float>(property->GetMetallic());
+  terms.roughness = static_cast<float>(property->GetRoughness());
+  terms.f0 = static_cast<float>(property->ComputeReflectanceOfBaseLayer());
+  terms.edgeTint = toColor(property->GetEdgeTint());
+  terms.coat = static_cast<float>(property->GetCoatStrength());
+  terms.coatRoughness = static_cast<float>(property->GetCoatRoughness());
+  // The coat lies in air.
+  terms.coatF0 =
+    static_cast<float>(vtkProperty::ComputeReflectanceFromIOR(property->GetCoatIOR(), 1.0));
+  terms.coatColor = toColor(property->GetCoatColor());
+  return terms;
+}
+
 } // anonymous namespace
 
 //------------------------------------------------------------------------------
@@ -122,6 +140,7 @@ Material extractMaterial(vtkActor* actor, const RayKeys& keys, ColorSource color
   apply(overrides, material.back);
   material.lit = property->GetLighting();
   material.edges = edgeStyle(property);
+  material.physical = physicalTerms(property);
   material.cullFront = property->GetFrontfaceCulling() != 0;
   material.cullBack = property->GetBackfaceCulling() != 0;
   material.reflectance = static_cast<float>(keys.reflectance);
