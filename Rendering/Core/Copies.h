@@ -29,6 +29,8 @@ struct Copies
   std::vector<glm::u8vec4> colors; // one a copy, or none: the part's own
   std::vector<std::int64_t> ids;   // the user's number of each copy; empty: its place
 
+  // The largest size of each number of the stored matrices.
+  glm::dmat4 largest{ 0.0 };
   // Of all copies of the geometry they were made for, in the part's coordinates.
   glm::dvec3 boundsMin{ 0.0 };
   glm::dvec3 boundsMax{ -1.0 };

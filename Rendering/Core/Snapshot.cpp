@@ -111,7 +111,7 @@ bool sameTriangles(const Part& a, const Part& b)
 
 bool sameCulling(const Material& a, const Material& b)
 {
-  return a.cullFront == b.cullFront && a.cullBack == b.cullBack;
+  return a.cullFront == b.cullFront && a.cullBack == b.cullBack && a.depthOffset == b.depthOffset;
 }
 
 template <class Item>
@@ -200,6 +200,13 @@ std::size_t Snapshot::partOf(TriangleId id) const
   return static_cast<std::size_t>(next - this->parts.begin()) - 1;
 }
 
+bool Snapshot::drawnAfter(TriangleId one, TriangleId other) const
+{
+  const std::uint32_t prop = this->parts[this->partOf(one)].source.prop;
+  const std::uint32_t otherProp = this->parts[this->partOf(other)].source.prop;
+  return prop != otherProp ? prop > otherProp : one > other;
+}
+
 Changes compareSnapshots(const Snapshot* before, const Snapshot& now)
 {
   Changes changes;
@@ -263,8 +270,17 @@ void boundCopies(const Geometry& geometry, Copies& copies)
 {
   copies.boundsMin = kNowhere;
   copies.boundsMax = -kNowhere;
+  copies.largest = glm::dmat4(0.0);
   for (std::size_t i = 0; i < copies.count(); ++i)
   {
+    for (int row = 0; row < 3; ++row)
+    {
+      for (int column = 0; column < 4; ++column)
+      {
+        const double size = std::abs(double(copies.rows[i][static_cast<std::size_t>(row)][column]));
+        copies.largest[column][row] = std::max(copies.largest[column][row], size);
+      }
+    }
     includeBox(copies.matrix(i), geometry.origin + glm::dvec3(geometry.boundsMin),
       geometry.origin + glm::dvec3(geometry.boundsMax), copies.boundsMin, copies.boundsMax);
   }

@@ -92,6 +92,20 @@ struct PhysicalTerms
   }
 };
 
+// By how much the camera is shown a surface farther away than it is: vtkMapper's polygon offset, in
+// OpenGL's window depth, from 0 to 1. Camera rays alone ask.
+struct DepthOffset
+{
+  float slope = 0.0f;    // of the depth's change from pixel to pixel
+  float constant = 0.0f;
+
+  bool any() const { return slope != 0.0f || constant != 0.0f; }
+  bool operator==(const DepthOffset& o) const
+  {
+    return slope == o.slope && constant == o.constant;
+  }
+};
+
 struct Material
 {
   PhongTerms front;
@@ -99,6 +113,7 @@ struct Material
   bool lit = true;             // vtkProperty::Lighting
   bool cullFront = false;      // hides sides from the camera only; rays see both sides
   bool cullBack = false;
+  DepthOffset depthOffset;
   float reflectance = 0.0f;    // [0, 1]: share of the mirror image in the colour
   float indexOfRefraction = 0; // 0: not glass; else the ratio inside : outside, >= 1
   Textures textures;           // of a part whose geometry has texture coordinates
@@ -112,7 +127,7 @@ struct Material
   bool operator==(const Material& o) const
   {
     return front == o.front && back == o.back && lit == o.lit && cullFront == o.cullFront &&
-      cullBack == o.cullBack && reflectance == o.reflectance &&
+      cullBack == o.cullBack && depthOffset == o.depthOffset && reflectance == o.reflectance &&
       indexOfRefraction == o.indexOfRefraction && textures == o.textures &&
       edges == o.edges && physical == o.physical;
   }
@@ -266,7 +281,7 @@ struct Refusals
   std::uint64_t degenerateTriangles = 0;// zero area: two equal corners or three in a line
   std::uint64_t emptyParts = 0;         // no input, no points or no triangle left
   std::uint64_t singularMatrices = 0;   // parts whose matrix cannot be inverted or is not finite
-  std::uint64_t outOfRangeParts = 0;    // parts whose bounds in the world exceed kLargestCoordinate
+  std::uint64_t outOfRangeParts = 0;    // parts whose points, or bounds in the world, exceed kLargestCoordinate
 
   std::uint64_t total() const
   {
@@ -292,6 +307,8 @@ struct Snapshot
   bool empty() const { return triangleCount == 0; }
   // The part that holds a triangle; the id must be below triangleCount.
   std::size_t partOf(TriangleId id) const;
+  // Whether VTK draws the one after the other: the actors come in the order of the renderer's props.
+  bool drawnAfter(TriangleId one, TriangleId other) const;
 };
 
 // What differs between two successive snapshots of one renderer.
@@ -302,7 +319,7 @@ struct Changes
   bool geometry = true;      // parts added, removed, shown, hidden, or with a new Geometry
   bool transforms = true;    // some part's matrix, its Geometry unchanged
   bool materials = true;     // some part's material
-  bool culling = true;       // some material shows other sides to the camera than before
+  bool culling = true;       // some material shows other sides to the camera, or at another offset
   bool lightColors = true;   // colour, attenuation, exponent: no shadow map is touched
   bool background = true;
   // Per light of the new snapshot: its position, direction, cone or kind is new.
@@ -327,7 +344,7 @@ Changes compareSnapshots(const Snapshot* before, const Snapshot& now);
 // World box of one part, from its local box; conservative (outward by nothing but rounding).
 void worldBounds(const Part& part, glm::dvec3& lower, glm::dvec3& upper);
 
-// Sets the bounds of the copies of a geometry.
+// Sets the bounds of the copies of a geometry, and of their matrices' numbers.
 void boundCopies(const Geometry& geometry, Copies& copies);
 
 } // namespace hrt

@@ -64,6 +64,11 @@ bool Blit::draw(vtkOpenGLRenderWindow* window, const Picture& picture, const Pix
   program->SetUniformi("useSecondary", picture.useSecondary ? 1 : 0);
   program->SetUniformi("reversedDepth", picture.hits.convention().reversed ? 1 : 0);
 
+  program->SetUniform2f("perW", picture.margin.perW);
+  program->SetUniformf("marginByW", picture.margin.byW);
+  program->SetUniformf("fixedMargin", DepthMargin::kFixed);
+  program->SetUniformf("marginBySlope", DepthMargin::kBySlope);
+
   glBindVertexArray(this->VertexArray);
   glDrawArrays(GL_TRIANGLES, 0, 3);
   glBindVertexArray(0);

@@ -29,6 +29,9 @@ struct DepthConvention
   // Of equal depths the last drawn stays, as in VTK.
   GLenum compare() const { return this->reversed ? GL_GEQUAL : GL_LEQUAL; }
 
+  // What grows by one where OpenGL's own depth grows by one.
+  float direction() const { return this->reversed ? -1.0f : 1.0f; }
+
   // The matrix to draw with, from one for OpenGL's clip space (z from -w to w).
   glm::dmat4 drawMatrix(const glm::dmat4& clip) const;
   // Maps to (x, y, d, w) where d / w is the stored depth.

@@ -28,11 +28,13 @@ static_assert(
 
 //------------------------------------------------------------------------------
 DepthPrograms::DepthPrograms(
-  vtkOpenGLRenderWindow* window, const Shaders& shaders, bool corners, const Tables& tables)
+  vtkOpenGLRenderWindow* window, const Shaders& shaders, bool corners, const Tables& tables,
+  float offsets)
   : Window(window)
   , Sources(shaders)
   , AllCorners(corners)
   , From(tables)
+  , Offsets(offsets)
 {
 }
 
@@ -47,7 +49,8 @@ DepthPrograms::~DepthPrograms()
 unsigned int DepthPrograms::kindOf(const Part& part) const
 {
   return (part.perforated ? Corners | Holes : this->AllCorners ? Corners : Shared) |
-    (part.copies ? WithCopies : Shared);
+    (part.copies ? WithCopies : Shared) |
+    (part.material.depthOffset.any() && this->Offsets != 0.0f ? WithOffset : Shared);
 }
 
 //------------------------------------------------------------------------------
@@ -76,11 +79,12 @@ void DepthPrograms::bindTables(vtkShaderProgram* program)
 vtkShaderProgram* DepthPrograms::make(unsigned int kind)
 {
   const bool corners = (kind & Corners) != 0, copies = (kind & WithCopies) != 0;
+  const bool offset = (kind & WithOffset) != 0;
   vtkShaderProgram* program = readyProgram(this->Window,
     depthVertexSource(corners ? Corners_vs : this->Sources.vertex, copies),
-    corners ? depthSource(this->Sources.cornerFragment, (kind & Holes) != 0)
-            : std::string(this->Sources.fragment));
-  if (program && kind != Shared)
+    depthSource(corners ? this->Sources.cornerFragment : this->Sources.fragment,
+      (kind & Holes) != 0, offset));
+  if (program && (corners || copies))
   {
     this->bindTables(program);
   }
@@ -124,6 +128,12 @@ bool DepthPrograms::draw(
   if (!this->use(kind))
   {
     return false;
+  }
+  if ((kind & WithOffset) != 0)
+  {
+    const DepthOffset& offset = of.material.depthOffset;
+    this->Current->SetUniformf("offsetBySlope", this->Offsets * offset.slope);
+    this->Current->SetUniformf("offsetConstant", this->Offsets * offset.constant);
   }
   const GeometryBuffers& geometry = this->From.geometry;
   const auto set = [this](const char* name, int value) {

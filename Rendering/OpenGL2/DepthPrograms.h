@@ -40,9 +40,10 @@ public:
     const char* cornerFragment;
   };
 
-  // `corners`: all parts are drawn corner by corner.
+  // `corners`: all parts are drawn corner by corner. `offsets`: what a polygon offset adds to the stored
+  // depth, 1 or -1; 0: nothing.
   DepthPrograms(vtkOpenGLRenderWindow* window, const Shaders& shaders, bool corners,
-    const Tables& tables);
+    const Tables& tables, float offsets = 0.0f);
   ~DepthPrograms();
   DepthPrograms(const DepthPrograms&) = delete;
   DepthPrograms& operator=(const DepthPrograms&) = delete;
@@ -58,7 +59,8 @@ private:
     Corners = 1,
     Holes = 2, // corners too
     WithCopies = 4,
-    KindCount = 8
+    WithOffset = 8,
+    KindCount = 16
   };
   unsigned int kindOf(const Part& part) const;
   bool use(unsigned int kind);
@@ -69,6 +71,7 @@ private:
   Shaders Sources;
   bool AllCorners;
   Tables From;
+  float Offsets;
   std::array<vtkShaderProgram*, KindCount> Programs{};
   vtkShaderProgram* Current = nullptr;
   std::unique_ptr<ScopedTextureUnits> Units; // of the tables, for the programs that fetch

@@ -149,6 +149,7 @@ std::string FrameRenderer::runStage(Stage stage, const Settings& settings)
     case Stage::ShadowMaps:
       return this->OnGPU.drawShadowMaps(snapshot, this->Statistics);
     case Stage::Visibility:
+      this->picture().margin = DepthMargin::of(snapshot);
       return settings.visibility == Visibility::RayCasting
         ? this->castPrimary(snapshot, settings)
         : this->drawVisibility(snapshot, settings);

@@ -11,7 +11,9 @@
 #include "ItemBuffer_fs.h"
 #include "ItemBuffer_vs.h"
 
+#include <algorithm>
 #include <cstddef>
+#include <numeric>
 #include <vector>
 
 namespace hrt
@@ -50,6 +52,17 @@ void setCulling(vtkOpenGLState* state, const Material& material)
   state->vtkglEnable(GL_CULL_FACE);
   state->vtkglCullFace(material.cullFront ? (material.cullBack ? GL_FRONT_AND_BACK : GL_FRONT)
                                           : GL_BACK);
+}
+
+// That of VTK: parts with copies are the snapshot's last.
+std::vector<std::size_t> drawOrder(const Snapshot& snapshot)
+{
+  std::vector<std::size_t> order(snapshot.parts.size());
+  std::iota(order.begin(), order.end(), std::size_t(0));
+  std::stable_sort(order.begin(), order.end(), [&snapshot](std::size_t a, std::size_t b) {
+    return snapshot.parts[a].source.prop < snapshot.parts[b].source.prop;
+  });
+  return order;
 }
 
 } // namespace
@@ -91,7 +104,8 @@ bool ObjectIntersectionBuffer::draw(vtkOpenGLRenderWindow* window, const Snapsho
   }
   const bool direct = this->Mode == Visibility::DirectRendering;
   DepthPrograms programs(
-    window, { ItemBuffer_vs, ItemBuffer_fs, DirectRendering_fs }, direct, tables);
+    window, { ItemBuffer_vs, ItemBuffer_fs, DirectRendering_fs }, direct, tables,
+    this->Convention.direction());
   const GLuint noHit[4] = { 0, 0, 0, 0 };
   const GLfloat far = this->Convention.clearDepth();
   target.beginDepthPass(this->Convention);
@@ -103,7 +117,7 @@ bool ObjectIntersectionBuffer::draw(vtkOpenGLRenderWindow* window, const Snapsho
   const ScopedLastVertexConvention provoking;
   const glm::dmat4 toClip = this->Convention.drawMatrix(snapshot.camera.viewToClip) *
     snapshot.camera.worldToView;
-  for (std::size_t i = 0; i < parts.size(); ++i)
+  for (const std::size_t i : drawOrder(snapshot))
   {
     if (!parts[i])
     {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "Rendering/OpenGL2/DepthConvention.h"
+#include "Rendering/OpenGL2/DepthMargin.h"
 #include "Rendering/OpenGL2/ObjectIntersectionBuffer.h"
 #include "Rendering/OpenGL2/ObjectPool.h"
 
@@ -23,6 +24,7 @@ struct Picture
   }
 
   ObjectIntersectionBuffer hits;
+  DepthMargin margin; // of the hits' depths
   Image2D primary;
   Image2D secondary;
   bool useSecondary = false; // composite it over the primary image

@@ -10,6 +10,7 @@
 #include "Copies.h"
 #include "Edges.h"
 #include "Holes.h"
+#include "Offset.h"
 #include "Pbr.h"
 #include "RayCaster_fs.h"
 #include "Shading.h"
@@ -91,7 +92,7 @@ std::string rayCasterSource(const SurfaceFeatures& features)
 }
 
 //------------------------------------------------------------------------------
-std::string depthSource(const char* text, bool holes)
+std::string depthSource(const char* text, bool holes, bool offset)
 {
   std::string result = text;
   std::string code;
@@ -102,6 +103,8 @@ std::string depthSource(const char* text, bool holes)
       code, "//HRT::Textures", std::string(TextureFetch) + TextureLookup);
   }
   vtkShaderProgram::Substitute(result, "//HRT::Holes", code);
+  vtkShaderProgram::Substitute(
+    result, "//HRT::Offset", offset ? std::string("#define HRT_OFFSET\n") + Offset : std::string());
   return result;
 }
 

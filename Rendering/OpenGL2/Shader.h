@@ -23,8 +23,9 @@ vtkShaderProgram* readyProgram(
 // surface in view has is not in it: a scene does not pay for the features of others.
 std::string rayCasterSource(const SurfaceFeatures& features);
 
-// A fragment shader that rasterises parts: as it is, or made to leave out the holes of their textures.
-std::string depthSource(const char* text, bool holes);
+// A fragment shader that rasterises parts: as it is, or made to leave out the holes of their textures, or
+// to show them at other depths (DepthOffset).
+std::string depthSource(const char* text, bool holes, bool offset);
 
 // A vertex shader that rasterises parts: of a part without copies, or with.
 std::string depthVertexSource(const char* text, bool copies);

@@ -86,7 +86,8 @@ const std::map<std::string, Recipe>& recipes()
         } } },
     { "normal",
       { 3, false,
-        [put](const Snapshot&, const Pixel& p, double* out) { put(out, p.point.normal); } } },
+        // The shading normal is on the wrong side under a mirroring matrix, as VTK's own is.
+        [put](const Snapshot&, const Pixel& p, double* out) { put(out, p.point.opticalNormal); } } },
     { "depth",
       { 1, false,
         [](const Snapshot& s, const Pixel& p, double* out) {

@@ -13,8 +13,9 @@
  * GPU-Accelerated Image-Space Methods".
  *
  * What is read from VTK: actors (also in assemblies) with polygonal data, data sets, composite data or
- * glyphs, their properties, textures, visible edges, clipping planes and scalar colours, all kinds of vtkLight, the camera's composed matrices, the background. Mirrors
- * and glass are asked for per actor with vtkHybridMaterial. Everything else - lines, points, text,
+ * glyphs, their properties, textures, visible edges, clipping planes, polygon offsets and scalar colours,
+ * all kinds of vtkLight, the camera's composed matrices, the background. Mirrors and glass are asked for per
+ * actor with vtkHybridMaterial. Everything else - lines, points, text,
  * physically based and translucent actors, volumes, 2D props - is drawn by VTK itself,
  * after and against the traced picture's depth. Picking with vtkHardwareSelector works as without
  * the pass.

@@ -85,7 +85,7 @@ const char* describe(LeftToVTK reason)
     case LeftToVTK::SingularMatrix:
       return "the matrix cannot be inverted or is not finite";
     case LeftToVTK::OutOfRange:
-      return "its bounds in the world are too large";
+      return "its points or its bounds in the world are too large";
     case LeftToVTK::TooManyTriangles:
       return "the scene has too many triangles";
     case LeftToVTK::MipMappedTexture:

@@ -38,7 +38,7 @@ enum class LeftToVTK
   TexturedGlyphs,
   ProjectiveMatrix,
   SingularMatrix,
-  OutOfRange, // its bounds in the world
+  OutOfRange, // its points, or its bounds in the world
   TooManyTriangles,
 
   // Its triangles are known, and seen in mirrors, but its picture is more than shaded triangles.

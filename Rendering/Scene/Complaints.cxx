@@ -32,7 +32,7 @@ std::string describeProblems(const Extraction& extraction)
 {
   std::ostringstream refused;
   const TriangleReport& report = extraction.report;
-  append(refused, report.nonFinitePoints, "with points that are not finite or beyond 1.844e18");
+  append(refused, report.nonFinitePoints, "with points that are not finite");
   append(refused, report.invalidIndices, "that name points that do not exist");
 
   std::ostringstream text;

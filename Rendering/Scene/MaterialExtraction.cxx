@@ -9,6 +9,7 @@
 #include "vtkInformation.h"
 #include "vtkInformationDoubleKey.h"
 #include "vtkInformationIntegerKey.h"
+#include "vtkMapper.h"
 #include "vtkProperty.h"
 
 #include "vtkVersion.h"
@@ -16,11 +17,13 @@
 #include <algorithm>
 #include <cmath>
 
-// Edges have an opacity of their own since VTK 9.3.
+// Edges have an opacity of their own since VTK 9.3, and polygon offsets a factor again.
 #if VTK_VERSION_NUMBER >= VTK_VERSION_CHECK(9, 3, 0)
 #define HRT_EDGE_OPACITY 1
+#define HRT_OFFSET_BY_SLOPE 1
 #else
 #define HRT_EDGE_OPACITY 0
+#define HRT_OFFSET_BY_SLOPE 0
 #endif
 
 namespace hrt
@@ -108,6 +111,34 @@ PhysicalTerms physicalTerms(vtkProperty* property)
   return terms;
 }
 
+//------------------------------------------------------------------------------
+// As vtkOpenGLPolyDataMapper has it for polygons and strips: GetCoincidentParameters, and what its
+// fragment shader makes of them. 65000 steps are what it takes a depth buffer for at least. Before VTK
+// 9.3 the factor is not used.
+DepthOffset depthOffset(vtkActor* actor)
+{
+  constexpr double kSteps = 65000.0;
+  constexpr double kUnitsOfShift = 4.0;
+  DepthOffset offset;
+  const int mode = vtkMapper::GetResolveCoincidentTopology();
+  if (mode == VTK_RESOLVE_SHIFT_ZBUFFER)
+  {
+    offset.constant = static_cast<float>(
+      kUnitsOfShift * vtkMapper::GetResolveCoincidentTopologyZShift() / kSteps);
+  }
+  vtkMapper* const mapper = actor->GetMapper();
+  if (mapper && (mode == VTK_RESOLVE_POLYGON_OFFSET || actor->GetProperty()->GetEdgeVisibility()))
+  {
+    double factor = 0.0, units = 0.0;
+    mapper->GetCoincidentTopologyPolygonOffsetParameters(factor, units);
+#if HRT_OFFSET_BY_SLOPE
+    offset.slope = static_cast<float>(factor);
+#endif
+    offset.constant = static_cast<float>(units / kSteps);
+  }
+  return offset;
+}
+
 } // anonymous namespace
 
 //------------------------------------------------------------------------------
@@ -143,6 +174,7 @@ Material extractMaterial(vtkActor* actor, const RayKeys& keys, ColorSource color
   material.physical = physicalTerms(property);
   material.cullFront = property->GetFrontfaceCulling() != 0;
   material.cullBack = property->GetBackfaceCulling() != 0;
+  material.depthOffset = depthOffset(actor);
   material.reflectance = static_cast<float>(keys.reflectance);
   material.indexOfRefraction = static_cast<float>(keys.indexOfRefraction);
   return material;

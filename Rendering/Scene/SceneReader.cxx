@@ -94,6 +94,14 @@ Textures texturesOf(const Textures& textures, vtkPolyData* data)
 }
 
 //------------------------------------------------------------------------------
+// What the range of float cannot hold is VTK's, which draws it without a word.
+LeftToVTK leaveOutOfRange(Snapshot& snapshot)
+{
+  ++snapshot.refusals.outOfRangeParts;
+  return LeftToVTK::OutOfRange;
+}
+
+//------------------------------------------------------------------------------
 // What of the light passes a part whose material is known.
 void letLightThrough(Part& part, const RayKeys& keys, bool translucent)
 {
@@ -246,11 +254,7 @@ LeftToVTK SceneReader::addPart(const ActorPath& path, const Part& part, Draft& d
   worldBounds(part, lower, upper);
   if (!draft.box.include(lower, upper))
   {
-    ++draft.frame.snapshot->refusals.outOfRangeParts;
-    this->Errors.addState(path.key,
-      nameOf(path.actor) +
-        ": its bounds in the world are beyond 1.844e18; left out of ray tracing");
-    return LeftToVTK::OutOfRange;
+    return leaveOutOfRange(*draft.frame.snapshot);
   }
   if (!draft.numbers.take(part.triangleCount()))
   {
@@ -363,6 +367,12 @@ LeftToVTK SceneReader::addPieces(const ActorPath& path, const MapperReading& rea
     }
     const ExtractionPointer extraction = this->extract(
       path, piece, part.key, !images.textures.layers.empty(), snapshot.refusals);
+    if (extraction->report.distantPoints > 0)
+    {
+      ++surfaces;
+      left = leaveOutOfRange(snapshot);
+      continue;
+    }
     part.geometry = planes.empty() ? extraction->geometry
                                    : memory.clipped.get(part.key, extraction->geometry, planes);
     if (part.geometry->triangleCount() == 0)

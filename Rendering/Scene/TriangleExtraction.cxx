@@ -25,11 +25,18 @@ namespace scene
 namespace
 {
 
+bool isFinite(const glm::dvec3& point)
+{
+  return std::isfinite(point.x) && std::isfinite(point.y) && std::isfinite(point.z);
+}
+
+//------------------------------------------------------------------------------
 enum class CellState
 {
   Good,
   InvalidIndex,
-  NonFinitePoint
+  NonFinitePoint,
+  DistantPoint
 };
 
 //------------------------------------------------------------------------------
@@ -42,9 +49,10 @@ CellState inspect(const vtkIdType* ids, vtkIdType count, const VectorReader& poi
     {
       return CellState::InvalidIndex;
     }
-    if (!isAdmissible(points[ids[i]]))
+    const glm::dvec3 point = points[ids[i]];
+    if (!isAdmissible(point) && state != CellState::NonFinitePoint)
     {
-      state = CellState::NonFinitePoint;
+      state = isFinite(point) ? CellState::DistantPoint : CellState::NonFinitePoint;
     }
   }
   return state;
@@ -61,6 +69,10 @@ bool admit(CellState state, std::uint64_t triangles, TriangleReport& report)
   else if (state == CellState::NonFinitePoint)
   {
     report.nonFinitePoints += triangles;
+  }
+  else if (state == CellState::DistantPoint)
+  {
+    report.distantPoints += triangles;
   }
   return state == CellState::Good;
 }

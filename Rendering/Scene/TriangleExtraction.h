@@ -23,13 +23,15 @@ namespace scene
 struct TriangleReport
 {
   std::uint64_t nonFinitePoints = 0;
+  std::uint64_t distantPoints = 0; // triangles with points that are finite, but beyond kLargestCoordinate
   std::uint64_t invalidIndices = 0;
   std::uint64_t degenerateTriangles = 0;
   std::uint64_t replacedNormals = 0; // triangles whose normals were not numbers
 
   bool operator==(const TriangleReport& o) const
   {
-    return nonFinitePoints == o.nonFinitePoints && invalidIndices == o.invalidIndices &&
+    return nonFinitePoints == o.nonFinitePoints && distantPoints == o.distantPoints &&
+      invalidIndices == o.invalidIndices &&
       degenerateTriangles == o.degenerateTriangles && replacedNormals == o.replacedNormals;
   }
 };
@@ -49,7 +51,7 @@ struct Triangles
 // The points as the cells number them; none when there are none.
 VectorReader readPoints(vtkPolyData* input);
 
-// Every triangle of the polygons and strips whose points exist and are finite, in cell order.
+// Every triangle of the polygons and strips whose points exist and are admissible, in cell order.
 // Throws std::length_error when there are more points than a PointNumber can tell apart.
 Triangles triangulate(vtkPolyData* input, const VectorReader& points, TriangleReport& report);
 

@@ -33,6 +33,7 @@ public:
   }
 
   std::size_t size() const { return this->Size; }
+  bool isSinglePrecision() const { return this->Floats != nullptr; }
   glm::dvec3 operator[](std::size_t i) const
   {
     if (this->Floats)

@@ -298,6 +298,7 @@ VertexPoints writeVertices(vtkPolyData* input, bool flat, Triangles triangles, G
 {
   const VectorReader points = readPoints(input);
   geometry.origin = originOf(triangles, points);
+  geometry.givenFrom = points.isSinglePrecision() ? geometry.origin : glm::dvec3(0.0);
   report.degenerateTriangles += dropDegenerate(triangles, points, geometry.origin);
 
   const NormalSource source(input, flat);

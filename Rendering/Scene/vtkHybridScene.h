@@ -11,10 +11,11 @@
  * matrix, property, light or camera leaves the geometry's pointers as they are.
  *
  * Bad input is refused at this door: triangles that name missing points, have coordinates that are
- * not finite or beyond 1.844e18, or have no area; parts whose matrix cannot be inverted, or whose
- * bounds in the world are beyond 1.844e18. Each part is told of once; all that is new in an update
- * takes one warning and one error, which name the first three parts and count the others. Triangles
- * without area are counted without a word, as VTK draws nothing of them. The sums are in
+ * not finite, or have no area; parts whose matrix cannot be inverted. Actors whose points, or whose
+ * bounds in the world, are beyond 1.844e18 are left to VTK as a whole, without a word, as VTK has
+ * none for them; of triangles without area VTK draws nothing, and they are counted without a word too.
+ * Of what else is refused each part is told of once; all that is new in an update takes one warning and
+ * one error, which name the first three parts and count the others. The sums are in
  * hrt::Snapshot::refusals.
  *
  * @sa

@@ -56,6 +56,10 @@ struct Geometry
   // float input.
   glm::dvec3 origin{ 0.0 };
 
+  // What to add to a position for the coordinate that was given in single precision, as far as its
+  // rounding is concerned: the origin where the data are floats, zero where they are not.
+  glm::dvec3 givenFrom{ 0.0 };
+
   std::vector<glm::vec3> positions;                    // of the vertices, relative to origin
   std::vector<std::array<std::uint32_t, 3>> triangles; // the numbers of their vertices
   CellIds cellIds;                                     // the vtkPolyData cells that they came from

@@ -54,7 +54,7 @@ Cause Dependencies::visibility() const
     return cause;
   }
   return this->C.camera ? "the camera changed"
-    : this->C.culling   ? "face culling changed"
+    : this->C.culling   ? "face culling or a polygon offset changed"
     : this->Settings.bounds     ? "the pixel bounds changed"
     : this->Settings.visibility ? "the visibility setting changed"
                                 : nullptr;

@@ -80,14 +80,12 @@ private:
   {
     const std::uint32_t ray = this->RayOf[pair];
     const Place place = this->PlaceOf[pair];
-    Search search(this->Of.given[ray]);
+    Search search(this->Of.given[ray], *this->Of.surfaces);
     search.best = this->Of.hits[ray];
-    if (!this->OfHierarchy.nearest(blockOf(place), 1u << laneOf(place), this->Members, search))
-    {
-      return 0;
-    }
-    this->Of.hits[ray] = search.best;
-    return 1u << ray;
+    const bool nearer =
+      this->OfHierarchy.nearest(blockOf(place), 1u << laneOf(place), this->Members, search);
+    this->Of.hits[ray] = search.best; // which may be a shared one now
+    return nearer ? 1u << ray : 0u;
   }
 
   HRT_LANES unsigned int decideTogether(unsigned int first, unsigned int count)
@@ -129,11 +127,31 @@ private:
       const int i = lowest(hits);
       const TriangleId triangle = member.firstTriangle +
         this->OfHierarchy.block(blockOf(placeOf[i])).triangle[laneOf(placeOf[i])];
-      const Hit hit = { triangle, lanes.t[i], lanes.u[i], lanes.v[i] };
-      nearer |= offer(hit, this->Of.hits[rayOf[i]]) ? 1u << rayOf[i] : 0u;
+      const std::uint32_t ray = rayOf[i];
+      if (this->Of.rays.twins &&
+        this->Of.given[ray].passesOver(triangle, lanes.t[i], *this->Of.surfaces))
+      {
+        continue;
+      }
+      const bool best = this->Of.hits[ray].offer(
+        triangle, lanes.t[i], lanes.u[i], lanes.v[i], Window{ this->Of, ray });
+      nearer |= best ? 1u << ray : 0u;
     }
     return nearer;
   }
+
+  // The ray's own, which takes a division, is asked where the widest does not answer.
+  struct Window
+  {
+    const Packet& of;
+    std::uint32_t ray;
+
+    bool holds(double first, double second) const
+    {
+      return this->of.widest.holds(first, second) &&
+        this->of.surfaces->windowOf(this->of.given[this->ray].direction).holds(first, second);
+    }
+  };
 
   const Hierarchy& OfHierarchy;
   const Member* Members;

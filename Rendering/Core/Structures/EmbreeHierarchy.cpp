@@ -189,10 +189,12 @@ bool Hierarchy::test(
   if (search.shear.longest < 0)
   {
     search.shear = ExactShear(search.ray->direction);
+    search.window = search.surfaces->windowOf(search.ray->direction);
   }
   TriangleHit exact;
   if (!exactHit(search.shear, search.ray->origin, search.ray->tMaximum,
-        this->positionsOf(block, lane), member.toScene, exact))
+        this->positionsOf(block, lane), member.toScene, exact) ||
+    search.ray->passesOver(hit.triangle, exact.t, *search.surfaces))
   {
     return false;
   }
@@ -217,7 +219,18 @@ bool Hierarchy::nearest(
     }
     Hit hit;
     hit.triangle = member.firstTriangle + triangle;
-    nearer = (this->test(block, lane, member, search, hit) && offer(hit, search.best)) || nearer;
+    if (!this->test(block, lane, member, search, hit))
+    {
+      continue;
+    }
+    if (search.all)
+    {
+      search.all->push_back(hit);
+    }
+    else
+    {
+      nearer = search.best.offer(hit.triangle, hit.t, hit.u, hit.v, search.window) || nearer;
+    }
   }
   return nearer;
 }

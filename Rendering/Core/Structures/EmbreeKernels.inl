@@ -237,10 +237,11 @@ struct Sieved
     return outside ^ ((1u << V::kLanes) - 1u);
   }
 
-  // Lanes that surely are, and not after the true end.
-  HRT_LANES unsigned int sure(const SieveEnd<V>& end, const SieveSlack& slack) const
+  // Lanes that surely are, after `begin`, and not after the true end. `begin`: TraversalRay's and the
+  // slack's depth.
+  HRT_LANES unsigned int sure(const SieveEnd<V>& end, V begin) const
   {
-    return less(this->bound, this->inside) & less(V::all(slack.depth), this->nearest) &
+    return less(this->bound, this->inside) & less(begin, this->nearest) &
       less(this->farthest, end.before);
   }
 };
@@ -270,6 +271,7 @@ struct Triangles
   Search& search;
   const TraversalRay& ray;
   const SieveSlack& slack;
+  const float begin;
   const Axes axes;
   const SieveRay<Floats> sieveRay;
 
@@ -280,6 +282,7 @@ struct Triangles
     , search(s)
     , ray(r)
     , slack(sieveSlack)
+    , begin(r.begin(s.ray->twinEnd) + sieveSlack.depth)
     , axes(r.direction)
     , sieveRay{ all(r.origin[axes.x]), all(r.origin[axes.y]),
       all(r.origin[axes.z] * r.direction[axes.z]), all(r.direction[axes.x]),
@@ -310,12 +313,12 @@ struct Triangles
     }
     if (kAny)
     {
-      const SieveResult lanes = { possible, sieved.sure(sieveEnd, this->slack) };
+      const SieveResult lanes = { possible, sieved.sure(sieveEnd, all(this->begin)) };
       this->search.found = this->hierarchy.any(number, lanes, this->members, this->search);
       return this->search.found ? -1.0f : end;
     }
     return this->hierarchy.nearest(number, possible, this->members, this->search)
-      ? this->ray.end(this->search.best.t)
+      ? this->ray.end(this->search.end())
       : end;
   }
 };

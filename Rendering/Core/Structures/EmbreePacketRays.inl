@@ -86,10 +86,12 @@ struct SceneRays : PacketRays
   static constexpr int kNoAxis = 3;
   PerRay<double> last;       // Ray::tMaximum
   PerRay<TriangleId> from;   // Ray::originTriangle
+  PerRay<float> twinEnd;     // Ray's
   PerRay<std::int64_t> away; // largestSize of the origin
   std::int64_t farthest = 0; // the largest of those
   unsigned int alone = 0;    // bits of those that must go singly, if they go at all
   bool leave = false;        // some of them do leave from a triangle
+  bool twins = false;        // and may meet twins of it
   int longest = kNoAxis;     // axis of all their directions, or kNoAxis where it is not one
 
   // False when none of them may go with others.
@@ -108,10 +110,29 @@ struct SceneRays : PacketRays
       return false;
     }
     this->leave = this->leaving(kNoTriangle) != (1u << kPacket) - 1u;
+    for (unsigned int i = 0; i < kPacket && this->leave; ++i)
+    {
+      this->twins = this->twins || this->twinEnd.of[i] > 0.0f;
+    }
     this->repeatActive();
     this->findLongest();
     return true;
   }
+
+  // The least of their directions' longest components.
+  HRT_LANES double shortest() const
+  {
+    std::int64_t least = std::numeric_limits<std::int64_t>::max();
+    for (unsigned int i = 0; i < kPacket; ++i)
+    {
+      const std::int64_t length = largestSize(this->direction, i);
+      least = length < least ? length : least;
+    }
+    double shortest;
+    std::memcpy(&shortest, &least, sizeof(shortest));
+    return shortest;
+  }
+
 
   // Bits of those that begin farther away than that.
   HRT_LANES unsigned int beyond(double distance) const
@@ -144,7 +165,7 @@ private:
     // The rays' numbers lie as registers do, and are turned by three rounds of exchanges.
     static_assert(sizeof(Ray) == 64 && offsetof(Ray, origin) == 0 &&
         offsetof(Ray, direction) == 24 && offsetof(Ray, tMaximum) == 48 &&
-        offsetof(Ray, originTriangle) == 56,
+        offsetof(Ray, originTriangle) == 56 && offsetof(Ray, twinEnd) == 60,
       "a ray is eight numbers");
     __m512d a[kLanes], b[kLanes];
     for (unsigned int i = 0; i < kLanes; ++i)
@@ -175,8 +196,11 @@ private:
       _mm512_store_pd(this->direction[axis].of + first, b[axis + 3]);
     }
     _mm512_store_pd(this->last.of + first, b[6]);
+    const __m512i from = _mm512_castpd_si512(b[7]);
     _mm256_store_si256(reinterpret_cast<__m256i*>(this->from.of + first),
-      _mm512_maskz_cvtepi64_epi32(0xff, _mm512_castpd_si512(b[7])));
+      _mm512_maskz_cvtepi64_epi32(0xff, from));
+    _mm256_store_si256(reinterpret_cast<__m256i*>(this->twinEnd.of + first),
+      _mm512_maskz_cvtepi64_epi32(0xff, _mm512_maskz_srli_epi64(0xff, from, 32)));
 #else
     for (unsigned int i = first; i < first + kLanes; ++i)
     {
@@ -188,6 +212,7 @@ private:
       }
       this->last.of[i] = ray.tMaximum;
       this->from.of[i] = ray.originTriangle;
+      this->twinEnd.of[i] = ray.twinEnd;
     }
 #endif
   }
@@ -240,11 +265,15 @@ private:
 struct PacketEntry
 {
   PerRay<float> origin[3], direction[3], end;
+  PerRay<float> begin;  // TraversalRay's
+  PerRay<float> behind; // the widest window, as far as it does not grow with the parameter
   PerRay<double> start, scale, toUnits; // toUnits: the scale's reciprocal
   unsigned int active = 0;              // the others repeat one of these
 
-  // enterBox for near rays, one operation after the other.
-  HRT_TARGET PacketEntry(const EntryBox& box, const PacketRays& rays)
+  // enterBox for near rays, one operation after the other. `rays`: `scene`'s in other coordinates, or
+  // themselves. `window`: the widest of theirs, where they look for the nearest hits.
+  HRT_TARGET PacketEntry(
+    const EntryBox& box, const PacketRays& rays, const SceneRays& scene, const HitWindow& window)
   {
     PerRay<std::int64_t> within;
     for (unsigned int i = 0; i < kPacket; ++i)
@@ -277,6 +306,16 @@ struct PacketEntry
     for (unsigned int i = 0; i < kPacket; ++i)
     {
       this->end.of[i] = this->endOf(i, rays.end.of[i]);
+      this->begin.of[i] = 0.0f;
+    }
+    for (unsigned int i = 0; i < kPacket && scene.twins; ++i)
+    {
+      this->begin.of[i] = this->endOf(i, static_cast<double>(scene.twinEnd.of[i]));
+    }
+    for (unsigned int i = 0; i < kPacket; ++i)
+    {
+      this->behind.of[i] = static_cast<float>(
+        window.fixed * this->scale.of[i] + this->start.of[i] * kComputedRounding);
     }
     this->repeatActive();
   }
@@ -342,6 +381,8 @@ private:
         this->direction[axis].of[i] = this->direction[axis].of[first];
       }
       this->end.of[i] = this->end.of[first];
+      this->begin.of[i] = this->begin.of[first];
+      this->behind.of[i] = this->behind.of[first];
     }
   }
 };

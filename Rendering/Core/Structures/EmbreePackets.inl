@@ -13,6 +13,8 @@ struct Packet
   const Ray* given = nullptr;
   Hit* hits = nullptr;              // their best, where they look for the nearest
   std::uint8_t* occluded = nullptr; // where any will do
+  const Coincidence* surfaces = nullptr;
+  HitWindow widest; // of all of them
   // Active are those that are still searching, and `end` is where each of them now ends.
   SceneRays rays;
 };
@@ -32,6 +34,7 @@ struct PacketTriangles
   Candidates candidates;
   static constexpr unsigned int kGroups = kPacket / RayFloats::kLanes;
   SieveRay<RayFloats> sieveRays[kGroups];
+  RayFloats begins[kGroups]; // Sieved::sure's
   const std::size_t along[3]; // from one axis of the shear to the next, in a block's corner
 
   HRT_LANES PacketTriangles(
@@ -50,6 +53,8 @@ struct PacketTriangles
       this->sieveRays[first / RayFloats::kLanes] = { loadRays(e.origin[f.x].of + first),
         loadRays(e.origin[f.y].of + first), loadRays(e.origin[f.z].of + first) * forward,
         loadRays(e.direction[f.x].of + first), loadRays(e.direction[f.y].of + first), forward };
+      this->begins[first / RayFloats::kLanes] =
+        loadRays(e.begin.of + first) + allRays(h.slack().depth);
     }
   }
 
@@ -95,9 +100,9 @@ struct PacketTriangles
     for (unsigned int rest = nearer; rest != 0; rest &= rest - 1)
     {
       const int i = lowest(rest);
-      const double t = this->packet.hits[i].t;
-      this->packet.rays.end.of[i] = t;
-      this->entry.end.of[i] = std::min(this->entry.end.of[i], this->entry.endOf(i, t));
+      const double end = this->packet.widest.end(this->packet.hits[i].t);
+      this->packet.rays.end.of[i] = end;
+      this->entry.end.of[i] = std::min(this->entry.end.of[i], this->entry.endOf(i, end));
     }
     return nearer != 0;
   }
@@ -110,15 +115,16 @@ private:
       allRays(axes[this->along[2]]) };
   }
 
-  // A triangle that is surely hit ends the search at its farthest corner, even before the exact
-  // kernel has said where the hit is. Whether it does for some ray.
+  // A triangle that is surely hit ends the search at its farthest corner, and the window behind it,
+  // even before the exact kernel has said where the hit is. Whether it does for some ray.
   HRT_LANES bool shorten(const RayFloats (&farthest)[kGroups])
   {
     const RayFloats depth = allRays(2.0f * this->hierarchy.slack().depth);
     unsigned int shorter = 0;
     for (unsigned int group = 0; group < kGroups; ++group)
     {
-      const RayFloats after = (farthest[group] + depth) * allRays(1.0f + 0x1p-22f);
+      const RayFloats behind = loadRays(this->entry.behind.of + group * RayFloats::kLanes) + depth;
+      const RayFloats after = (farthest[group] + behind) * allRays(1.0f + 0x1p-22f);
       float* const at = this->entry.end.of + group * RayFloats::kLanes;
       const RayFloats end = loadRays(at);
       shorter |= less(after, end);
@@ -154,7 +160,7 @@ private:
         [spread](auto...) HRT_TARGET { return allRays(spread); });
       const SieveEnd<RayFloats> end(loadRays(this->entry.end.of + first), slack);
       met.possible |= sieved.possible(end, slack) << first & others;
-      const unsigned int sure = sieved.sure(end, slack) & others >> first;
+      const unsigned int sure = sieved.sure(end, this->begins[group]) & others >> first;
       met.sure |= sure << first;
       farthest[group] = where(sure, least(farthest[group], sieved.farthest), farthest[group]);
     }
@@ -171,7 +177,7 @@ private:
     for (unsigned int rest = met.possible & ~met.sure; rest != 0; rest &= rest - 1)
     {
       const int i = lowest(rest);
-      Search search(this->packet.given[i]);
+      Search search(this->packet.given[i], *this->packet.surfaces);
       found |= this->hierarchy.any(number, { 1u << lane, 0 }, this->members, search) ? 1u << i : 0u;
     }
     if (found == 0)
@@ -222,7 +228,7 @@ HRT_TARGET void traceTogether(const PacketEntry& entry, const TraversalBox& box,
 template <bool kAny, class Searcher>
 HRT_LANES void searchSingly(Packet& packet, int i, Searcher searcher)
 {
-  Search search(packet.given[i]);
+  Search search(packet.given[i], *packet.surfaces);
   if (kAny)
   {
     searcher(search);
@@ -299,7 +305,7 @@ HRT_TARGET void searchPart(const Placed& part, Packet& packet, unsigned int whic
   }
   PacketRays local;
   place(part, packet.rays, which & ~far, local);
-  PacketEntry entry(part.hierarchy->entry(), local);
+  PacketEntry entry(part.hierarchy->entry(), local, packet.rays, packet.widest);
   PartTracer<kAny> tracer{ part, local, packet, entry };
   traceTogether(entry, part.hierarchy->box(), tracer);
 }
@@ -368,6 +374,10 @@ HRT_TARGET void searchScene(const TopLevel& scene, Packet& packet, unsigned int 
   {
     return;
   }
+  if (!kAny)
+  {
+    packet.widest.fixed = packet.surfaces->reach() / packet.rays.shortest();
+  }
   if (scene.size() == 1)
   {
     PlacedScratch scratch;
@@ -375,7 +385,7 @@ HRT_TARGET void searchScene(const TopLevel& scene, Packet& packet, unsigned int 
     return;
   }
   packet.rays.repeatActive();
-  PacketEntry entry(scene.entry(), packet.rays);
+  PacketEntry entry(scene.entry(), packet.rays, packet.rays, packet.widest);
   SceneTracer<kAny> tracer{ scene, packet, entry };
   traceTogether(entry, scene.box(), tracer);
 }
@@ -386,6 +396,7 @@ HRT_TARGET void nearestOfPacket(
   std::fill(hits, hits + count, Hit());
   Packet packet;
   packet.given = rays;
+  packet.surfaces = &scene.coincidence();
   packet.hits = hits;
   searchScene<false>(scene, packet, count);
 }
@@ -396,6 +407,7 @@ HRT_TARGET void anyOfPacket(
   std::fill(occluded, occluded + count, std::uint8_t(0));
   Packet packet;
   packet.given = rays;
+  packet.surfaces = &scene.coincidence();
   packet.occluded = occluded;
   searchScene<true>(scene, packet, count);
 }

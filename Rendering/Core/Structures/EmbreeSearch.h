@@ -7,6 +7,7 @@
 
 #include <cmath>
 #include <cstdint>
+#include <vector>
 
 namespace hrt
 {
@@ -22,32 +23,28 @@ struct Member
   bool castsShadow = false;
 };
 
-// True when the hit becomes the best. The order of traversal must not show: of equal hits the largest
-// number wins, which is drawn last.
-inline bool offer(const Hit& hit, Hit& best)
-{
-  if (hit.t > best.t || (hit.t == best.t && hit.triangle <= best.triangle))
-  {
-    return false;
-  }
-  best = hit;
-  return true;
-}
-
 // What one ray looks for, shared by all levels of its traversal.
 struct Search
 {
   const Ray* ray = nullptr;
-  ExactShear shear; // made when the first triangle needs it
+  const Coincidence* surfaces = nullptr;
+  ExactShear shear; // made when the first triangle needs it, and the window too
+  HitWindow window;
   Hit best;
+  std::vector<Hit>* all = nullptr; // where every hit goes, when it is not the nearest that is wanted
   bool found = false; // for occlusion: some hit
 
   Search() = default;
-  explicit Search(const Ray& r)
+  Search(const Ray& r, const Coincidence& s)
     : ray(&r)
+    , surfaces(&s)
   {
   }
-  double end() const { return this->best.valid() ? this->best.t : this->ray->tMaximum; }
+  // Up to here, inclusive, hits still count.
+  double end() const
+  {
+    return this->best.valid() ? this->window.end(this->best.t) : this->ray->tMaximum;
+  }
 };
 
 } // namespace embree

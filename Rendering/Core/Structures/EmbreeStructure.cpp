@@ -174,7 +174,7 @@ struct EmbreeStructure::Implementation
         this->placeOwn(snapshot.parts[i], snapshot.origin, parts);
       }
     }
-    return this->top->update(this->device, std::move(parts));
+    return this->top->update(this->device, std::move(parts), Coincidence(snapshot));
   }
 
   void placeMerged(const embree::MergedHierarchy& hierarchy, const Snapshot& snapshot,
@@ -262,14 +262,23 @@ StructureReport EmbreeStructure::update(const Snapshot& snapshot)
 
 Hit EmbreeStructure::intersect(const Ray& ray) const
 {
-  embree::Search search(ray);
+  embree::Search search(ray, this->Impl->top->coincidence());
   this->Impl->kernels.nearest(*this->Impl->top, search);
   return search.best;
 }
 
+void EmbreeStructure::intersectAll(const Ray& ray, std::vector<Hit>& hits) const
+{
+  hits.clear();
+  embree::Search search(ray, this->Impl->top->coincidence());
+  search.all = &hits;
+  this->Impl->kernels.nearest(*this->Impl->top, search);
+  std::sort(hits.begin(), hits.end(), [](const Hit& a, const Hit& b) { return a.before(b); });
+}
+
 bool EmbreeStructure::occluded(const Ray& ray) const
 {
-  embree::Search search(ray);
+  embree::Search search(ray, this->Impl->top->coincidence());
   this->Impl->kernels.any(*this->Impl->top, search);
   return search.found;
 }

@@ -38,6 +38,7 @@ public:
 
   StructureReport update(const Snapshot& snapshot) override;
   Hit intersect(const Ray& ray) const override;
+  void intersectAll(const Ray& ray, std::vector<Hit>& hits) const override;
   bool occluded(const Ray& ray) const override;
   // Coherent rays are traversed in packets of 16.
   void intersect(const Ray* rays, Hit* hits, std::size_t count, RayOrder order) const override;

@@ -79,8 +79,9 @@ TraversalBox PlacedCopies::box(std::size_t copy) const
   return boxInScene(this->hierarchy->box(), this->member(copy).toScene);
 }
 
-bool TopLevel::update(Device& device, TopLevelParts parts)
+bool TopLevel::update(Device& device, TopLevelParts parts, Coincidence coincidence)
 {
+  this->Surfaces = std::move(coincidence);
   const auto sameHierarchy = [](const auto& a, const auto& b) { return a.hierarchy == b.hierarchy; };
   const bool same = this->Of.placed == parts.placed && this->Of.copies == parts.copies;
   const bool sameHierarchies = alike(this->Of.placed, parts.placed, sameHierarchy) &&

@@ -103,7 +103,7 @@ class TopLevel
 {
 public:
   // Returns whether anything has moved.
-  bool update(Device& device, TopLevelParts parts);
+  bool update(Device& device, TopLevelParts parts, Coincidence coincidence);
 
   // Placed hierarchies, each copy one.
   std::size_t size() const { return this->Count; }
@@ -113,6 +113,7 @@ public:
     return i < this->Of.placed.size() ? this->Of.placed[i]
                                       : this->copy(i - this->Of.placed.size(), scratch);
   }
+  const Coincidence& coincidence() const { return this->Surfaces; }
   // Of several parts; its leaves are parts.
   const WideTree& tree() const { return this->Tree; }
   const TraversalBox& box() const { return this->Box; }
@@ -135,6 +136,7 @@ private:
   TopLevelParts Of;
   std::vector<std::size_t> FirstCopy; // of each part with copies, among all copies
   std::size_t Count = 0;
+  Coincidence Surfaces;
   TraversalBox Box;
   EntryBox Entry;
   Placement Place;

@@ -1,5 +1,6 @@
 // What every structure does with the triangles that its hierarchy proposes: the exact test, the origin
-// triangle left out, and of equal hits the largest number, so that the order of proposals does not show.
+// triangle and its twins left out, and of equal hits the largest number, so that the order of proposals
+// does not show.
 #pragma once
 
 #include "Rendering/Core/Geometry/TriangleTest.h"
@@ -8,6 +9,7 @@
 
 #include <cmath>
 #include <optional>
+#include <vector>
 
 namespace hrt
 {
@@ -22,8 +24,11 @@ struct PlacedTriangles
 class ExactSearch
 {
 public:
-  explicit ExactSearch(const Ray& ray)
+  // Both must outlive it. `all`: where every hit goes, when it is not the nearest that is looked for.
+  ExactSearch(const Ray& ray, const Coincidence& surfaces, std::vector<Hit>* all = nullptr)
     : TheRay(ray)
+    , Surfaces(surfaces)
+    , All(all)
   {
   }
 
@@ -35,8 +40,11 @@ public:
       this->TheRay.hasLength();
   }
   const Hit& best() const { return this->Best; }
-  // Up to here, inclusive, a hit could still be better.
-  double end() const { return this->Best.valid() ? this->Best.t : this->TheRay.tMaximum; }
+  // Up to here, inclusive, hits still count.
+  double end() const
+  {
+    return this->Best.valid() ? this->Window.end(this->Best.t) : this->TheRay.tMaximum;
+  }
 
   // Whether the ray leaves from the triangle, which it then does not hit.
   bool isOrigin(const PlacedTriangles& placed, std::uint32_t triangle) const
@@ -44,8 +52,8 @@ public:
     return placed.firstTriangle + triangle == this->TheRay.originTriangle;
   }
 
-  // True when the ray hits the geometry's triangle, which is then the best hit if it is. `positions`: the
-  // triangle's, three.
+  // True when the ray hits the geometry's triangle, which is then the best hit if it is, or one of all.
+  // `positions`: the triangle's, three.
   bool test(
     const PlacedTriangles& placed, std::uint32_t triangle, const glm::vec3 (&positions)[3])
   {
@@ -56,6 +64,7 @@ public:
     if (!this->Exact)
     {
       this->Exact.emplace(this->TheRay.origin, this->TheRay.direction);
+      this->Window = this->Surfaces.windowOf(this->TheRay.direction);
     }
     TriangleHit hit;
     if (!this->Exact->hitsTriangle(
@@ -64,16 +73,27 @@ public:
       return false;
     }
     const TriangleId id = placed.firstTriangle + triangle;
-    if (hit.t < this->Best.t || (hit.t == this->Best.t && id > this->Best.triangle))
+    if (this->TheRay.passesOver(id, hit.t, this->Surfaces))
     {
-      this->Best = { id, hit.t, hit.u, hit.v };
+      return false;
+    }
+    if (this->All)
+    {
+      this->All->emplace_back(id, hit.t, hit.u, hit.v);
+    }
+    else
+    {
+      this->Best.offer(id, hit.t, hit.u, hit.v, this->Window);
     }
     return true;
   }
 
 private:
   const Ray& TheRay;
-  std::optional<ShearedRay> Exact; // made when the first triangle needs it
+  const Coincidence& Surfaces;
+  std::vector<Hit>* All;
+  std::optional<ShearedRay> Exact; // made when the first triangle needs it, and the window too
+  HitWindow Window;
   Hit Best;
 };
 

@@ -154,7 +154,8 @@ void searchInstance(const Instance& instance, const ScaledRay& ray, double origi
   const glm::dvec3 translation(instance.placed.toScene[3]);
   KdRay lower;
   switch (lower.enter(tree, instance.inverse * (ray.origin - translation),
-    instance.inverse * ray.direction, end, instance.slack(originReach)))
+    instance.inverse * ray.direction, end, instance.slack(originReach),
+    static_cast<double>(search.ray().twinEnd) * ray.perT))
   {
     case KdRay::Entry::Missed:
       return;

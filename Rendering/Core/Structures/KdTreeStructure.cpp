@@ -53,6 +53,7 @@ struct KdTreeStructure::Implementation
   glm::dvec3 origin{ 0.0 }; // of the scene, which the copies are placed relative to
   std::size_t count = 0;    // of all instances
   KdTreeParts parts;
+  Coincidence coincidence; // of the last update's snapshot
 
   // The instance of a number; `scratch` holds that of a copy.
   const Instance& instance(std::size_t i, Instance& scratch) const
@@ -81,6 +82,7 @@ struct KdTreeStructure::Implementation
   Hit nearest(const Ray& ray, Counters& counters) const;
   template <class Counters>
   bool any(const Ray& ray, Counters& counters) const;
+  void all(const Ray& ray, std::vector<Hit>& hits) const;
 };
 
 std::shared_ptr<const TriangleTree> KdTreeStructure::Implementation::build(
@@ -159,16 +161,29 @@ void KdTreeStructure::Implementation::search(const ExactSearch& search,
 template <class Counters>
 Hit KdTreeStructure::Implementation::nearest(const Ray& ray, Counters& counters) const
 {
-  ExactSearch exact(ray);
+  ExactSearch exact(ray, this->coincidence);
   kdtree::NearestTest test{ exact };
   this->search(exact, &Instance::visibleToRays, test, counters);
   return exact.best();
 }
 
+void KdTreeStructure::Implementation::all(const Ray& ray, std::vector<Hit>& hits) const
+{
+  hits.clear();
+  ExactSearch exact(ray, this->coincidence, &hits);
+  kdtree::NearestTest test{ exact };
+  KdNoCounters none;
+  this->search(exact, &Instance::visibleToRays, test, none);
+  std::sort(hits.begin(), hits.end(), [](const Hit& a, const Hit& b) { return a.before(b); });
+  // A triangle that a plane has cut lies in several leaves.
+  const auto same = [](const Hit& a, const Hit& b) { return a.triangle == b.triangle; };
+  hits.erase(std::unique(hits.begin(), hits.end(), same), hits.end());
+}
+
 template <class Counters>
 bool KdTreeStructure::Implementation::any(const Ray& ray, Counters& counters) const
 {
-  ExactSearch exact(ray);
+  ExactSearch exact(ray, this->coincidence);
   kdtree::AnyTest test{ exact };
   this->search(exact, &Instance::castsShadow, test, counters);
   return test.done();
@@ -227,6 +242,7 @@ StructureReport KdTreeStructure::update(const Snapshot& snapshot)
     report.partsRebuilt = true;
   }
   this->Impl->trees.swap(current);
+  this->Impl->coincidence = Coincidence(snapshot);
   report.milliseconds =
     std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - started).count();
   return report;
@@ -236,6 +252,11 @@ Hit KdTreeStructure::intersect(const Ray& ray) const
 {
   KdNoCounters none;
   return this->Impl->nearest(ray, none);
+}
+
+void KdTreeStructure::intersectAll(const Ray& ray, std::vector<Hit>& hits) const
+{
+  this->Impl->all(ray, hits);
 }
 
 bool KdTreeStructure::occluded(const Ray& ray) const

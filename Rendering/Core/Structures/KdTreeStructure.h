@@ -50,6 +50,7 @@ public:
   using Structure::intersect; // the streams, which the overloads here would hide
   using Structure::occluded;
   Hit intersect(const Ray& ray) const override;
+  void intersectAll(const Ray& ray, std::vector<Hit>& hits) const override;
   bool occluded(const Ray& ray) const override;
 
   // The same answers, and what it took.

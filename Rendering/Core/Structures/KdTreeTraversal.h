@@ -74,10 +74,10 @@ public:
     Unbounded // numbers too large or too small for the bounds above
   };
 
-  // `slack`: how far the tree's triangles and the ray may lie from where the numbers say. Only an entered
-  // ray can traverse.
+  // `slack`: how far the tree's triangles and the ray may lie from where the numbers say. `twinEnd`:
+  // Ray's. Only an entered ray can traverse.
   Entry enter(const KdTree& tree, const glm::dvec3& origin, const glm::dvec3& direction,
-    double tMaximum, double slack)
+    double tMaximum, double slack, double twinEnd = 0.0)
   {
     if (tree.groups().empty())
     {
@@ -110,6 +110,7 @@ public:
     }
     this->Start = start;
     this->Last = std::min<double>(end - start, kLargestFloat);
+    this->TwinEnd = this->endAt(twinEnd);
     this->place(origin + start * along, along, inverse, grown);
     // The sieve takes its bounds for floats' roundings from a reach: this one's is the slack.
     this->Slack = SieveSlack(tree.reach() + 0x1p24 * slack);
@@ -125,7 +126,7 @@ public:
     const KdCells* const groups = tree.groups().data();
     const Slabs slabs = this->TheSlabs;
     Stack stack;
-    SieveRay ray(this->Origin, this->Direction, this->endAt(tMaximum));
+    SieveRay ray(this->Origin, this->Direction, this->TwinEnd, this->endAt(tMaximum));
     Cell cell{ 0.0f, 0, 0 };
     do
     {
@@ -301,6 +302,7 @@ private:
   Slabs TheSlabs;
   double Scale = 1.0;             // parameter per t
   double Start = 0.0, Last = 0.0; // parameters of the tree's box, from the true origin and from there
+  float TwinEnd = 0.0f;           // as a parameter, rounded outward
   SieveSlack Slack;
 };
 

@@ -104,6 +104,9 @@ struct TraversalRay
     const double parameter = std::max(t * this->scale - this->start + this->margin, 0.0);
     return static_cast<float>(parameter) * (1.0f + 0x1p-22f) + std::numeric_limits<float>::min();
   }
+
+  // Before here, rounded outward, a hit may be on a twin of the ray's origin. `twinEnd`: Ray's.
+  float begin(float twinEnd) const { return this->end(static_cast<double>(twinEnd)); }
 };
 
 // Asked without arithmetic, which would raise floating-point exceptions in hosts that trap them.

@@ -21,9 +21,12 @@ struct SieveRay
   float shearX, shearY;
   float forward; // the sign of the direction's z
   float end;     // parameter where the search ends, rounded outward
+  float begin;   // and before which no hit is sure to count: a twin of the ray's origin may be there
 
-  HRT_ALWAYS_INLINE SieveRay(const float (&origin)[3], const float (&direction)[3], float last)
+  HRT_ALWAYS_INLINE SieveRay(
+    const float (&origin)[3], const float (&direction)[3], float first, float last)
   {
+    this->begin = first;
     this->z = std::fabs(direction[0]) >= 1.0f ? 0 : (std::fabs(direction[1]) >= 1.0f ? 1 : 2);
     this->x = this->z == 2 ? 0 : this->z + 1;
     this->y = this->z == 0 ? 2 : this->z - 1;
@@ -64,6 +67,7 @@ HRT_ALWAYS_INLINE SieveResult sieve(
   const float sx = ray.shearX, sy = ray.shearY, forward = ray.forward;
   const float slack = slacks.edge, floor = slacks.floor;
   const float begin = slacks.depth, end = ray.end + slacks.depth;
+  const float surelyAfter = ray.begin + slacks.depth;
   const float surelyBefore = ray.end * (1.0f - 0x1p-21f) - slacks.depth;
   std::int32_t possible[n], sure[n];
   for (int i = 0; i < n; ++i)
@@ -86,7 +90,7 @@ HRT_ALWAYS_INLINE SieveResult sieve(
     const bool outside =
       ((least < -bound) & (most > bound)) | (nearest > end) | (farthest < -begin);
     const bool inside =
-      ((least > bound) | (most < -bound)) & (nearest > begin) & (farthest < surelyBefore);
+      ((least > bound) | (most < -bound)) & (nearest > surelyAfter) & (farthest < surelyBefore);
     possible[i] = outside ? 0 : 1 << i;
     sure[i] = inside ? 1 << i : 0;
   }

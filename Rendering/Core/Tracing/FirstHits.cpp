@@ -6,9 +6,11 @@
 namespace hrt
 {
 
-FirstHits::FirstHits(const Snapshot& snapshot, const Surfaces& surfaces, Multisampling mode)
+FirstHits::FirstHits(const Snapshot& snapshot, const Surfaces& surfaces, const CameraOrder& order,
+  Multisampling mode)
   : Scene(snapshot)
   , Points(surfaces)
+  , Order(order)
   , Mode(mode)
   , Planes(snapshot)
 {
@@ -72,8 +74,7 @@ FirstHits::Outcome FirstHits::find(const std::uint32_t* ids, std::uint32_t pixel
       Hit other;
       if (this->Points.exactHit(candidates.triangles[i], exact, last, other) &&
         other.t >= first && !this->Points.isHole(other, ray.direction) &&
-        (!best.valid() || other.t < best.t ||
-          (other.t == best.t && other.triangle > best.triangle)))
+        (!best.valid() || this->Order.hides(ray, other, best)))
       {
         best = other;
       }

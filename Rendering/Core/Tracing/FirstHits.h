@@ -2,6 +2,7 @@
 // rasteriser's answer is checked and repaired, by the rules of Multisampling.h.
 #pragma once
 
+#include "Rendering/Core/Tracing/CameraOrder.h"
 #include "Rendering/Core/Tracing/ClipPlanes.h"
 #include "Rendering/Core/Tracing/Surface.h"
 #include "Rendering/Core/Tracing/Tracer.h"
@@ -15,8 +16,9 @@ namespace hrt
 class FirstHits
 {
 public:
-  // Both must outlive it.
-  FirstHits(const Snapshot& snapshot, const Surfaces& surfaces, Multisampling mode);
+  // The first three must outlive it.
+  FirstHits(const Snapshot& snapshot, const Surfaces& surfaces, const CameraOrder& order,
+    Multisampling mode);
 
   enum class Outcome
   {
@@ -42,6 +44,7 @@ private:
 
   const Snapshot& Scene;
   const Surfaces& Points;
+  const CameraOrder& Order;
   Multisampling Mode;
   ClipPlanes Planes;
 };

@@ -11,7 +11,8 @@ namespace hrt
 namespace
 {
 
-// A shadow ray is followed through at most so many translucent surfaces and holes; beyond, it counts as blocked.
+// A shadow ray is followed through at most so many translucent surfaces and holes; beyond, it counts as
+// blocked.
 // Each lets less than 1 - 2^-8 of the light through or is invisible in 8 bits.
 constexpr int kMostVeils = 64;
 
@@ -37,6 +38,7 @@ Lighting::Lighting(const Snapshot& snapshot, const Surfaces& surfaces, const Str
   , Rays(structure)
   , Settings(settings)
   , Points(surfaces)
+  , Sets(snapshot, surfaces, structure, settings.refractions)
 {
   const CameraRays rays = snapshot.camera.worldRays(snapshot.origin);
   this->HasEye = rays.originX == glm::dvec3(0.0) && rays.originY == glm::dvec3(0.0);
@@ -237,6 +239,18 @@ Lighting::Sight Lighting::sight(const SurfacePoint& point, const Light& light, R
 
 // A translucent surface of opacity a and colour C lets (1 - a) (1 - a + a C) of the light through:
 // all of it at a = 0, none at a = 1, and the more of its colour the denser it is.
+glm::vec3 Lighting::throughVeil(
+  const SurfacePoint& point, int bounces, PathSignature& signature) const
+{
+  if (!isVeil(this->Scene.parts[point.part], this->Settings.tintedShadows))
+  {
+    return glm::vec3(1.0f);
+  }
+  signature += signatureOf(PathEvent::Veil, bounces, point.part, point.frontSide ? 1 : 0);
+  const float a = glm::clamp(point.opacity, 0.0f, 1.0f);
+  return (1.0f - a) * (1.0f - a + a * point.diffuseColor);
+}
+
 glm::vec3 Lighting::transmittance(Ray ray, int bounces, PathSignature& signature) const
 {
   glm::vec3 share(1.0f);
@@ -247,13 +261,16 @@ glm::vec3 Lighting::transmittance(Ray ray, int bounces, PathSignature& signature
     {
       return share;
     }
-    const SurfacePoint point = this->Points.at(hit, ray.direction);
-    if (isVeil(this->Scene.parts[point.part], this->Settings.tintedShadows))
+    std::vector<Hit> members(1, hit);
+    if (hit.shared)
     {
-      signature += signatureOf(PathEvent::Veil, bounces, point.part, point.frontSide ? 1 : 0);
-      const float a = glm::clamp(point.opacity, 0.0f, 1.0f);
-      share *= (1.0f - a) * (1.0f - a + a * point.diffuseColor);
+      this->Sets.gather(ray, hit, members);
     }
+    for (const Hit& member : members)
+    {
+      share *= this->throughVeil(this->Points.at(member, ray.direction), bounces, signature);
+    }
+    const SurfacePoint point = this->Points.at(hit, ray.direction);
     const double left = ray.tMaximum - hit.t;
     ray = leave(point, ray.direction);
     ray.tMaximum = left;

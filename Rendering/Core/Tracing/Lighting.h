@@ -3,6 +3,7 @@
 // the rest waits in a queue whose rays are traced together.
 #pragma once
 
+#include "Rendering/Core/Tracing/Meeting.h"
 #include "Rendering/Core/Tracing/PathSignature.h"
 #include "Rendering/Core/Tracing/Surface.h"
 #include "Rendering/Core/Tracing/Tracer.h"
@@ -88,12 +89,15 @@ private:
   };
   Sight sight(const SurfacePoint& point, const Light& light, Ray& ray) const;
   glm::vec3 transmittance(Ray ray, int bounces, PathSignature& signature) const;
+  glm::vec3 throughVeil(
+    const SurfacePoint& point, int bounces, PathSignature& signature) const;
   float shareFromMap(const SurfacePoint& point, std::size_t light) const;
 
   const Snapshot& Scene;
   const Structure& Rays;
   const TracerSettings& Settings;
   const Surfaces& Points;
+  Meetings Sets;
   std::vector<shading::HrtLight> Lights; // positions unset: see lightFrom
   std::vector<shading::HrtLight> ViewLights; // in view coordinates, as shadow maps are looked up in
   glm::dmat4 ToView; // from coordinates relative to the scene's origin

@@ -124,14 +124,57 @@ private:
     return (point.frontSide ? !front : !back) && point.opacity > 0.0f;
   }
 
+  // What the camera is shown of the members; not valid where that is none of them.
+  Hit frontOf(const Ray& ray, const std::vector<Hit>& members) const
+  {
+    Hit front;
+    for (const Hit& member : members)
+    {
+      if ((!front.valid() || this->Frame.cameraOrder.hides(ray, member, front)) &&
+        this->shown(ray, member))
+      {
+        front = member;
+      }
+    }
+    return front;
+  }
+
+  // The same of what lies in one place with the hit.
+  Hit frontOf(const Ray& ray, const Hit& hit)
+  {
+    if (!hit.shared)
+    {
+      return this->shown(ray, hit) ? hit : Hit();
+    }
+    this->Frame.meetings.gather(ray, hit, this->Members);
+    return this->frontOf(ray, this->Members);
+  }
+
+  void show(std::uint32_t pixel, const Ray& ray, const Hit& hit)
+  {
+    this->Hits.ids[pixel] = hit.triangle + 1;
+    this->Hits.clipDepths[pixel] = this->Frame.cameraOrder.clipDepth(ray, hit);
+  }
+
   void store(std::uint32_t pixel, Ray ray, Hit hit, RayCount& count)
   {
+    if (hit.valid() && this->Frame.cameraOrder.offsetsMatter())
+    {
+      // What lies far behind may be shown before the nearest.
+      this->Frame.structure.intersectAll(ray, this->Members);
+      const Hit front = this->frontOf(ray, this->Members);
+      if (front.valid())
+      {
+        this->show(pixel, ray, front);
+      }
+      return;
+    }
     for (int passed = 0; hit.valid() && passed < kMostHidden; ++passed)
     {
-      if (this->shown(ray, hit))
+      const Hit front = this->frontOf(ray, hit);
+      if (front.valid())
       {
-        this->Hits.ids[pixel] = hit.triangle + 1;
-        this->Hits.clipDepths[pixel] = this->Planes.depth(ray.origin + hit.t * ray.direction);
+        this->show(pixel, ray, front);
         return;
       }
       const double left = ray.tMaximum - hit.t;
@@ -149,6 +192,7 @@ private:
   std::vector<Ray> Rays;
   std::vector<std::uint32_t> Pixels;
   std::vector<Hit> Found;
+  std::vector<Hit> Members; // of a set
 };
 
 // A thread's own.

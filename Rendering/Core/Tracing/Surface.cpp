@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace hrt
 {
@@ -15,11 +16,14 @@ namespace hrt
 namespace
 {
 
-// A point computed from corners of size R is off its triangle by a few roundings, at most 8 R e
-// with e = 2^-53, and the depth at which the kernel then meets a neighbour in the same plane is
-// uncertain by about as much times the neighbour's length over its height. 2^-43 = 1024 e covers
-// slivers a hundred times longer than high, and still is only a tenth of a picometre in a metre.
-constexpr double kPositionError = 0x1p-43;
+// Where rays leave a triangle from a point on its edge, they begin so many position errors inside of it.
+// Rounding then no longer decides on which side of the neighbour they begin that shares the edge: it is
+// that of the triangle's inside, also where the two meet at an angle of only 10 degrees.
+constexpr double kInside = 8.0;
+
+// Barycentric coordinates above this are that far inside, unless the triangle is a million times less
+// high than the scene is large: for most points nothing more is computed.
+constexpr double kSurelyInside = 0x1p-20;
 
 double largestCoordinate(const Corners& corners)
 {
@@ -38,6 +42,20 @@ bool hitPrimary(const Corners& corners, TriangleId id, const Ray& ray, Hit& hit)
   const glm::dvec2 inside = shading64::hrtClampBarycentrics(plane.u, plane.v);
   hit = { id, plane.t, inside.x, inside.y };
   return true;
+}
+
+// A point of the triangle at least `distance` from its edges, or as far as the middle is: its least
+// barycentric coordinates are raised. Rays that leave a closed body's edge inwards stay within.
+glm::dvec3 insideOf(const Corners& corners, const Hit& hit, double distance)
+{
+  const glm::dvec3 ab = corners.b - corners.a, ac = corners.c - corners.a;
+  const double area = glm::length(glm::cross(ab, ac)); // twice it
+  const glm::dvec3 weights(1.0 - hit.u - hit.v, hit.u, hit.v);
+  const glm::dvec3 edges(glm::length(ac - ab), glm::length(ac), glm::length(ab));
+  const glm::dvec3 raised =
+    glm::max(weights, glm::min(distance * edges / area, glm::dvec3(1.0 / 3.0)));
+  const double sum = raised.x + raised.y + raised.z;
+  return corners.a + raised.y / sum * ab + raised.z / sum * ac;
 }
 
 // The interpolated corner normal, or zero when the geometry has none.
@@ -88,6 +106,7 @@ glm::dmat4 translation(const glm::dvec3& by)
 
 Surfaces::Surfaces(const Snapshot& snapshot)
   : Scene(snapshot)
+  , Twins(snapshot)
   , ToWindow(snapshot.camera.clipToWindow() * snapshot.camera.viewToClip *
       (snapshot.camera.worldToView * translation(snapshot.origin)))
 {
@@ -164,6 +183,16 @@ bool Surfaces::exactHit(
   return true;
 }
 
+glm::dvec3 Surfaces::positionOf(const Hit& hit) const
+{
+  const std::size_t index = this->Scene.partOf(hit.triangle);
+  const Part& part = this->Scene.parts[index];
+  Placement scratch;
+  const Corners corners = sceneCorners(*part.geometry,
+    this->placementOf(index, hit.triangle, scratch).toScene, part.indexOf(hit.triangle));
+  return corners.a + hit.u * (corners.b - corners.a) + hit.v * (corners.c - corners.a);
+}
+
 SurfacePoint Surfaces::at(const Hit& hit, const glm::dvec3& direction) const
 {
   shading::HrtTerms terms;
@@ -185,7 +214,13 @@ SurfacePoint Surfaces::evaluate(
   const glm::dvec3 e1 = corners.b - corners.a, e2 = corners.c - corners.a;
   point.material = &part.material;
   point.position = corners.a + hit.u * e1 + hit.v * e2;
-  point.positionError = kPositionError * largestCoordinate(corners);
+  point.positionError = kComputedRounding * largestCoordinate(corners);
+  point.twinReach = this->Twins.twinReach(point.part);
+  point.arrival = direction;
+
+  point.start = std::min({ hit.u, hit.v, 1.0 - hit.u - hit.v }) > kSurelyInside
+    ? point.position
+    : insideOf(corners, hit, kInside * point.positionError);
 
   const shading64::HrtSides sides =
     shading64::hrtSides(corners.a, corners.b, corners.c, direction);
@@ -292,11 +327,27 @@ bool primaryHit(const Snapshot& snapshot, TriangleId id, const Ray& ray, Hit& hi
 
 Ray leave(const SurfacePoint& point, const glm::dvec3& direction)
 {
-  const double side = glm::dot(point.geometricNormal, direction) < 0.0 ? -1.0 : 1.0;
+  const double along = glm::dot(point.geometricNormal, direction);
   Ray ray;
-  ray.origin = point.position + side * point.positionError * point.geometricNormal;
+  ray.origin = point.start;
+  if (along < 0.0)
+  {
+    ray.origin -= point.positionError * point.geometricNormal;
+  }
+  else
+  {
+    // Also a step back to where the point is seen from: where another surface stands on this one, with
+    // its edge through the point, the way back is on the side of it that is seen too.
+    ray.origin += point.positionError * (point.geometricNormal - point.arrival);
+  }
   ray.direction = direction;
   ray.originTriangle = point.triangle;
+  // A twin that rounding has turned is met a little later than the distance alone says. The floor is
+  // for rays along the surface.
+  constexpr double kTurned = 4.0, kLeast = 1e-200;
+  ray.twinEnd = static_cast<float>(
+    std::min<double>(kTurned * point.twinReach / std::max(std::abs(along), kLeast),
+      std::numeric_limits<float>::max()));
   return ray;
 }
 

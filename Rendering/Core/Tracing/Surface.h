@@ -3,6 +3,7 @@
 // means the same point to each.
 #pragma once
 
+#include "Rendering/Core/Geometry/Coincidence.h"
 #include "Rendering/Core/Geometry/TriangleTest.h"
 #include "Rendering/Core/Shading/Shading.h"
 #include "Rendering/Core/Snapshot.h"
@@ -36,8 +37,14 @@ struct SurfacePoint
   glm::vec3 diffuseColor{ 1.0f }; // without its coefficient, textured: the tint of glass
   float opacity = 1.0f;           // 0 in a hole
 
-  // How far rounding may have put `position` off the triangle, generously: see Surface.cpp.
+  // Where rays that leave it begin, but for `positionError`: the position, or next to it where that lies
+  // on an edge of the triangle. See Surface.cpp.
+  glm::dvec3 start{ 0.0 };
+  glm::dvec3 arrival{ 0.0 }; // the direction that it is seen along
+  // How far rounding may have put `position` off the triangle, generously.
   double positionError = 0.0;
+  // No surface in one place with it is farther away: along the normal.
+  double twinReach = 0.0;
 };
 
 // How far a ray has come from the camera. Lengths count along the camera's axis, as depths in the window:
@@ -65,6 +72,12 @@ public:
 
   // The surface at a hit, as seen along the ray's direction.
   SurfacePoint at(const Hit& hit, const glm::dvec3& direction) const;
+
+  // Its position alone.
+  glm::dvec3 positionOf(const Hit& hit) const;
+
+  // Which of them lie in one place.
+  const Coincidence& coincidence() const { return this->Twins; }
 
   // The same with the edges that the surface shows: at the centre of a pixel of the camera's, counted in
   // pixels from the lower left, where another triangle of the surface may be seen ...
@@ -96,6 +109,7 @@ private:
 
   const Snapshot& Scene;
   std::vector<Placement> Placements; // one a part, of its first copy
+  Coincidence Twins;
   glm::dmat3 ViewAxes; // of the view coordinates, unit
   glm::dmat4 ToWindow; // from coordinates relative to the scene's origin; pixels and depth, times w
   // A pixel's size at the camera, and by how much it grows with depth.
@@ -108,7 +122,7 @@ private:
 bool primaryHit(const Snapshot& snapshot, TriangleId id, const Ray& ray, Hit& hit);
 
 // A ray that leaves a surface point: it starts off the triangle by the point's rounding error, on
-// the side that it leaves to, and never hits the triangle itself.
+// the side that it leaves to, and never hits the triangle itself, nor what lies in one place with it.
 Ray leave(const SurfacePoint& point, const glm::dvec3& direction);
 
 } // namespace hrt

@@ -34,7 +34,10 @@ TracedFrame::TracedFrame(
   , structure(rayStructure)
   , settings(tracerSettings)
   , surfaces(s)
-  , firstHits(s, surfaces, tracerSettings.multisampling)
+  , meetings(s, surfaces, rayStructure,
+      tracerSettings.refractions && tracerSettings.maximumDepth > 0)
+  , cameraOrder(s, surfaces)
+  , firstHits(s, surfaces, cameraOrder, tracerSettings.multisampling)
   , lighting(s, surfaces, rayStructure, tracerSettings)
   , rays(s.camera.worldRays(s.origin))
   , viewer(glm::dvec3(glm::inverse(s.camera.worldToView)[3]) - s.origin)
@@ -92,6 +95,7 @@ void TileTracer::trace(const std::vector<std::uint32_t>& pixels, Wanted wanted,
   this->Missed.assign(pixels.size(), 0);
   this->Detailed.assign(pixels.size(), 0);
   this->Signatures.assign(pixels.size(), 0);
+  this->Sets.clear();
   this->Counters = RayCounters();
   for (std::size_t i = 0; i < pixels.size(); ++i)
   {
@@ -167,6 +171,14 @@ void TileTracer::start(std::uint32_t index, std::uint32_t pixel, Wanted wanted,
   Path eye;
   eye.pixel = index;
   eye.way = this->Frame.surfaces.beginning(ray.direction, hit.t);
+  if (this->Frame.isGlass(material))
+  {
+    // What it lies on, or is twin to, comes next. Rays would have said so; the rasteriser does not.
+    std::vector<Hit> members;
+    this->Frame.meetings.gatherAround(ray, hit, members);
+    this->Frame.meetings.order(ray.direction, kNoTriangle, members, hit.triangle);
+    this->enter(members, eye);
+  }
   if (wanted == Wanted::SecondaryOnly && mirror)
   {
     this->Alphas[index] = 1.0f - material.reflectance;
@@ -186,17 +198,47 @@ void TileTracer::startMirror(
   const SurfacePoint& point, const glm::dvec3& direction, const Path& path)
 {
   this->spawn(this->Reflected, leave(point, mirrorDirection(point, direction)), path,
-    glm::vec3(point.material->reflectance));
+    glm::vec3(point.material->reflectance), true);
 }
 
-void TileTracer::spawn(
-  PathQueue& queue, const Ray& ray, const Path& path, const glm::vec3& share)
+// Puts the path at the first of several surfaces in one place. One alone is none.
+void TileTracer::enter(std::vector<Hit>& members, Path& path)
 {
-  Path next;
-  next.pixel = path.pixel;
+  if (members.size() > 1)
+  {
+    path.set = static_cast<std::int32_t>(this->Sets.size());
+    path.member = 0;
+    path.step = 1;
+    this->Sets.push_back(std::move(members));
+  }
+}
+
+// To the next surface of the set, or out of it.
+void TileTracer::turnOn(Path& path, bool back) const
+{
+  if (path.set == kNoSet)
+  {
+    return;
+  }
+  path.step = back ? -path.step : path.step;
+  path.member += path.step;
+  const auto size =
+    static_cast<std::int32_t>(this->Sets[static_cast<std::size_t>(path.set)].size());
+  if (path.member < 0 || path.member >= size)
+  {
+    path.set = kNoSet;
+  }
+}
+
+// `back`: to the side that the path has come from.
+void TileTracer::spawn(
+  PathQueue& queue, const Ray& ray, const Path& path, const glm::vec3& share, bool back)
+{
+  Path next = path;
   next.weight = path.weight * share;
   next.bounces = path.bounces + 1;
-  next.way = path.way;
+  next.layers = 0;
+  this->turnOn(next, back);
   queue.rays.push_back(ray);
   queue.paths.push_back(next);
 }
@@ -215,6 +257,13 @@ void TileTracer::follow(PathQueue& queue, Kind kind, RayCount& count, RayOrder o
       ++count.answered;
       continue;
     }
+    if (queue.paths[i].set != kNoSet)
+    {
+      ++count.answered;
+      this->Within.rays.push_back(queue.rays[i]);
+      this->Within.paths.push_back(queue.paths[i]);
+      continue;
+    }
     ++count.traced;
     queue.rays[kept] = queue.rays[i];
     queue.paths[kept] = queue.paths[i];
@@ -225,17 +274,43 @@ void TileTracer::follow(PathQueue& queue, Kind kind, RayCount& count, RayOrder o
   for (std::size_t i = 0; i < kept; ++i)
   {
     Path& path = queue.paths[i];
+    Hit& hit = this->Hits[i];
     const glm::dvec3 direction = queue.rays[i].direction;
-    if (!this->Hits[i].valid())
+    if (!hit.valid())
     {
       this->addBackground(direction, path, path.weight);
       continue;
     }
-    path.way.add(this->Hits[i].t);
-    this->arrive(this->Frame.surfaces.seenFrom(this->Hits[i], direction, path.way), direction,
-      -direction, path, kind);
+    if (hit.shared)
+    {
+      hit = this->firstOfSet(queue.rays[i], hit, path);
+    }
+    path.way.add(hit.t);
+    this->arrive(this->Frame.surfaces.seenFrom(hit, direction, path.way), direction, -direction,
+      path, kind);
   }
   queue.clear();
+  for (std::size_t i = 0; i < this->Within.rays.size(); ++i)
+  {
+    const Path& path = this->Within.paths[i];
+    const Hit& hit = this->Sets[static_cast<std::size_t>(path.set)]
+                               [static_cast<std::size_t>(path.member)];
+    const glm::dvec3 direction = this->Within.rays[i].direction;
+    this->arrive(this->Frame.surfaces.seenFrom(hit, direction, path.way), direction, -direction,
+      path, kind);
+  }
+  this->Within.clear();
+}
+
+// The surface that the ray meets first where it may meet several in one place; the path is among them then.
+Hit TileTracer::firstOfSet(const Ray& ray, const Hit& hit, Path& path)
+{
+  std::vector<Hit> members;
+  this->Frame.meetings.gather(ray, hit, members);
+  this->Frame.meetings.order(ray.direction, ray.originTriangle, members);
+  const Hit first = members.empty() ? hit : members.front();
+  this->enter(members, path);
+  return first;
 }
 
 // Adds a surface's own light and sends on the rays that it asks for.
@@ -283,6 +358,7 @@ void TileTracer::passThrough(const SurfacePoint& point, const glm::dvec3& direct
   PathQueue& sameKind = kind == Kind::Reflected ? this->Reflected : this->Refracted;
   Path next = path;
   next.weight *= 1.0f - point.opacity;
+  this->turnOn(next, false);
   if (++next.layers > kMostLayers)
   {
     this->addBackground(direction, path, next.weight);
@@ -312,13 +388,13 @@ void TileTracer::arriveAtGlass(const SurfacePoint& point, const glm::dvec3& dire
   if (reflections)
   {
     this->spawn(this->Reflected, leave(point, boundary.reflected), path,
-      glm::vec3(reflectance * (1.0f - point.edgeShare)));
+      glm::vec3(reflectance * (1.0f - point.edgeShare)), true);
   }
   if (boundary.reflectance < 1.0)
   {
     const float share = reflections ? 1.0f - reflectance : 1.0f;
     this->spawn(
-      this->Refracted, leave(point, boundary.refracted), path, share * point.diffuseColor);
+      this->Refracted, leave(point, boundary.refracted), path, share * point.diffuseColor, false);
   }
 }
 

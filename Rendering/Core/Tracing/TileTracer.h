@@ -7,6 +7,7 @@
 
 #include "Rendering/Core/Tracing/FirstHits.h"
 #include "Rendering/Core/Tracing/Lighting.h"
+#include "Rendering/Core/Tracing/Meeting.h"
 #include "Rendering/Core/Tracing/PathSignature.h"
 #include "Rendering/Core/Tracing/Surface.h"
 #include "Rendering/Core/Tracing/Tracer.h"
@@ -36,6 +37,8 @@ struct TracedFrame
   const Structure& structure;
   const TracerSettings& settings;
   Surfaces surfaces;
+  Meetings meetings;
+  CameraOrder cameraOrder;
   FirstHits firstHits;
   Lighting lighting;
   CameraRays rays;
@@ -77,7 +80,13 @@ private:
     int bounces = 0;          // reflections and refractions so far
     int layers = 0;           // translucent surfaces passed since the last of them
     Way way;                  // from the camera to where the ray starts
+    // Between surfaces in one place: the set, the member that the ray meets next or has just met, and
+    // the step to the one after it.
+    std::int32_t set = kNoSet;
+    std::int32_t member = 0;
+    std::int32_t step = 1;
   };
+  static constexpr std::int32_t kNoSet = -1;
   struct PathQueue
   {
     std::vector<Ray> rays;
@@ -94,6 +103,9 @@ private:
     SecondaryResult& result);
   bool mayShowOptics(std::uint32_t pixel, const std::uint32_t* ids) const;
   void startMirror(const SurfacePoint& point, const glm::dvec3& direction, const Path& path);
+  void enter(std::vector<Hit>& members, Path& path);
+  Hit firstOfSet(const Ray& ray, const Hit& hit, Path& path);
+  void turnOn(Path& path, bool back) const;
   enum class Kind
   {
     Eye,
@@ -106,7 +118,8 @@ private:
     const glm::dvec3& toViewer, const Path& path);
   void passThrough(const SurfacePoint& point, const glm::dvec3& direction, const Path& path,
     Kind kind);
-  void spawn(PathQueue& queue, const Ray& ray, const Path& path, const glm::vec3& share);
+  void spawn(
+    PathQueue& queue, const Ray& ray, const Path& path, const glm::vec3& share, bool back);
   void follow(PathQueue& queue, Kind kind, RayCount& count, RayOrder order);
   void addBackground(const glm::dvec3& direction, const Path& path, const glm::vec3& weight);
   glm::vec3 background(const glm::dvec3& direction) const;
@@ -120,7 +133,9 @@ private:
   std::vector<PathSignature> Signatures;
   PathQueue Reflected, Refracted;         // rays of the generation to come
   PathQueue NowReflected, NowRefracted;   // of the one being traced
+  PathQueue Within;                       // of which these stay between surfaces in one place
   std::vector<Hit> Hits;
+  std::vector<std::vector<Hit>> Sets;     // of surfaces in one place, in the order of the first ray's way
   ShadowQueue Shadows;
   RayCounters Counters;
 };

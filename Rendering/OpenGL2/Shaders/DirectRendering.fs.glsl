@@ -5,10 +5,14 @@
 flat in int triangle;
 in vec2 barycentric;
 out uvec4 hit;
+//HRT::Offset
 //HRT::Holes
 
 void main()
 {
+#ifdef HRT_OFFSET
+  gl_FragDepth = offsetDepth();
+#endif
 #ifdef HRT_HOLES
   if (isHole(triangle, barycentric, gl_FrontFacing))
   {

@@ -281,6 +281,10 @@ class Failing final : public Structure
 public:
   StructureReport update(const Snapshot&) override { return {}; }
   Hit intersect(const Ray&) const override { throw std::runtime_error("no memory"); }
+  void intersectAll(const Ray&, std::vector<Hit>&) const override
+  {
+    throw std::runtime_error("no memory");
+  }
   bool occluded(const Ray&) const override { throw std::runtime_error("no memory"); }
 };
 

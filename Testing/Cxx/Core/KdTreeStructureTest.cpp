@@ -249,6 +249,7 @@ TEST(KdTreeStructure, TheWidthOfVectorsDoesNotShow)
   const auto triangles = std::make_shared<kdtree::TriangleTree>();
   triangles->geometry = mesh;
   triangles->tree = KdTree::build(*mesh);
+  const Coincidence surfaces(s);
   const kdtree::Instance instance = kdtree::makeInstance(s.parts[0], *triangles, s.origin);
   Random random(13);
   int hits = 0, wrong = 0;
@@ -260,7 +261,7 @@ TEST(KdTreeStructure, TheWidthOfVectorsDoesNotShow)
     KdNoCounters none;
     for (const bool wide : { false, kdtree::hasWideVectors() })
     {
-      ExactSearch nearest(ray), any(ray);
+      ExactSearch nearest(ray, surfaces), any(ray, surfaces);
       kdtree::NearestTest nearestTest{ nearest };
       kdtree::AnyTest anyTest{ any };
       kdtree::searchInstance(instance, scaled, reach, nearest, nearestTest, none, wide);

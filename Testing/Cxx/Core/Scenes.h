@@ -9,6 +9,7 @@
 #include <glm/gtc/constants.hpp>
 #include <glm/gtc/matrix_transform.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <memory>
 #include <random>
@@ -151,19 +152,31 @@ public:
   StructureReport update(const Snapshot& snapshot) override
   {
     this->Scene = snapshot;
+    this->Surfaces = Coincidence(snapshot);
     return {};
   }
 
   Hit intersect(const Ray& ray) const override
   {
-    Hit best;
-    this->forEachHit(ray, &Part::visibleToRays, [&](const Hit& hit) {
-      if (hit.t < best.t || (hit.t == best.t && hit.triangle > best.triangle))
-      {
-        best = hit;
-      }
+    std::vector<Hit> hits;
+    this->intersectAll(ray, hits);
+    if (hits.empty())
+    {
+      return Hit();
+    }
+    hits[0].shared =
+      hits.size() > 1 && hits[1].t <= this->Surfaces.windowOf(ray.direction).end(hits[0].t);
+    return hits[0];
+  }
+
+  void intersectAll(const Ray& ray, std::vector<Hit>& hits) const override
+  {
+    hits.clear();
+    this->forEachHit(
+      ray, &Part::visibleToRays, [&](const Hit& hit) { hits.push_back(hit); });
+    std::sort(hits.begin(), hits.end(), [](const Hit& a, const Hit& b) {
+      return a.t < b.t || (a.t == b.t && a.triangle > b.triangle);
     });
-    return best;
   }
 
   bool occluded(const Ray& ray) const override
@@ -190,7 +203,9 @@ private:
         const TriangleId id = part.firstTriangle + static_cast<TriangleId>(i);
         TriangleHit hit;
         if (id != ray.originTriangle &&
-          exact.hitsTriangle(sceneCorners(*part.geometry, toScene, i), ray.tMaximum, hit))
+          exact.hitsTriangle(sceneCorners(*part.geometry, toScene, i), ray.tMaximum, hit) &&
+          !(hit.t <= double(ray.twinEnd) &&
+            this->Surfaces.passesOver(ray.originTriangle, id, ray.origin, ray.direction)))
         {
           found(Hit{ id, hit.t, hit.u, hit.v });
         }
@@ -199,6 +214,7 @@ private:
   }
 
   Snapshot Scene;
+  Coincidence Surfaces;
 };
 
 // The same numbers on every machine: the standard's distributions are not specified to the bit.

@@ -5,6 +5,7 @@
 #include "Scenes.h"
 
 #include <algorithm>
+#include <limits>
 #include <vector>
 
 namespace hrt
@@ -14,7 +15,7 @@ namespace checks
 
 inline bool same(const Hit& a, const Hit& b)
 {
-  return a.triangle == b.triangle && a.t == b.t && a.u == b.u && a.v == b.v;
+  return a.triangle == b.triangle && a.t == b.t && a.u == b.u && a.v == b.v && a.shared == b.shared;
 }
 
 inline Corners cornersOf(const Snapshot& s, TriangleId id)
@@ -45,6 +46,7 @@ inline Ray randomRay(const Snapshot& s, scenes::Random& random, int i, double ha
   if (i % 5 == 0 && s.triangleCount > 0)
   {
     ray.originTriangle = static_cast<TriangleId>(random.below(s.triangleCount));
+    ray.twinEnd = i % 2 ? 0.0f : static_cast<float>(random(0.0, 4.0));
   }
   return ray;
 }
@@ -125,6 +127,7 @@ inline std::vector<Ray> raysTogether(
       case Together::FromATriangle:
         ray.origin = glm::mix(from.a, glm::mix(from.b, from.c, random(0.0, width)), first);
         ray.originTriangle = left;
+        ray.twinEnd = random.below(2) ? 0.0f : std::numeric_limits<float>::max();
         break;
       case Together::AtADiagonal:
         ray.direction = diagonal + random.inBox(off);
@@ -149,7 +152,8 @@ inline std::vector<Ray> raysTogether(
   return rays;
 }
 
-// The rays whose answers differ: single rays, streams of both orders, hits and occlusion.
+// The rays whose answers differ: single rays, streams of both orders, nearest hits, all hits, and
+// occlusion.
 inline int wrongAnswers(
   const Structure& structure, const Structure& reference, const std::vector<Ray>& rays)
 {
@@ -167,7 +171,13 @@ inline int wrongAnswers(
   {
     const Hit expected = reference.intersect(rays[i]);
     const bool shadow = reference.occluded(rays[i]);
-    wrong += !same(structure.intersect(rays[i]), expected) || !same(hits[0][i], expected) ||
+    std::vector<Hit> all, expectedAll;
+    structure.intersectAll(rays[i], all);
+    reference.intersectAll(rays[i], expectedAll);
+    const bool sameAll =
+      std::equal(all.begin(), all.end(), expectedAll.begin(), expectedAll.end(), same);
+    wrong += !sameAll || !same(structure.intersect(rays[i]), expected) ||
+      !same(hits[0][i], expected) ||
       !same(hits[1][i], expected) || structure.occluded(rays[i]) != shadow ||
       (occluded[0][i] != 0) != shadow || (occluded[1][i] != 0) != shadow;
   }
