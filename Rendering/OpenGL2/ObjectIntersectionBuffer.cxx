@@ -91,7 +91,7 @@ bool ObjectIntersectionBuffer::draw(vtkOpenGLRenderWindow* window, const Snapsho
   }
   const bool direct = this->Mode == Visibility::DirectRendering;
   DepthPrograms programs(
-    window, { ItemBuffer_vs, ItemBuffer_fs, DirectRendering_fs }, direct, tables);
+    window, snapshot, { ItemBuffer_vs, ItemBuffer_fs, DirectRendering_fs }, direct, tables);
   const GLuint noHit[4] = { 0, 0, 0, 0 };
   const GLfloat far = this->Convention.clearDepth();
   target.beginDepthPass(this->Convention);
@@ -110,7 +110,7 @@ bool ObjectIntersectionBuffer::draw(vtkOpenGLRenderWindow* window, const Snapsho
       continue;
     }
     setCulling(window->GetState(), snapshot.parts[i].material);
-    if (!programs.draw(snapshot, i, toClip))
+    if (!programs.draw(i, toClip))
     {
       return false;
     }
