@@ -71,6 +71,27 @@ struct EdgeStyle
   }
 };
 
+// What physically based shading asks for beside the diffuse colour; see Surface/Pbr.glsl.
+struct PhysicalTerms
+{
+  bool used = false; // else the surface is Phong's
+  float metallic = 0.0f;
+  float roughness = 0.5f;
+  float f0 = 0.04f; // reflectance along the normal of what is no metal
+  glm::vec3 edgeTint{ 1.0f };
+  float coat = 0.0f; // strength
+  float coatRoughness = 0.0f;
+  float coatF0 = 0.0f;
+  glm::vec3 coatColor{ 1.0f };
+
+  bool operator==(const PhysicalTerms& o) const
+  {
+    return used == o.used && metallic == o.metallic && roughness == o.roughness && f0 == o.f0 &&
+      edgeTint == o.edgeTint && coat == o.coat && coatRoughness == o.coatRoughness &&
+      coatF0 == o.coatF0 && coatColor == o.coatColor;
+  }
+};
+
 // By how much the camera is shown a surface farther away than it is: vtkMapper's polygon offset, in
 // OpenGL's window depth, from 0 to 1. Camera rays alone ask.
 struct DepthOffset
@@ -97,6 +118,7 @@ struct Material
   float indexOfRefraction = 0; // 0: not glass; else the ratio inside : outside, >= 1
   Textures textures;           // of a part whose geometry has texture coordinates
   EdgeStyle edges;
+  PhysicalTerms physical;      // where the surface is lit
 
   bool isMirror() const { return reflectance > 0.0f; }
   bool isGlass() const { return indexOfRefraction > 0.0f; }
@@ -107,7 +129,7 @@ struct Material
     return front == o.front && back == o.back && lit == o.lit && cullFront == o.cullFront &&
       cullBack == o.cullBack && depthOffset == o.depthOffset && reflectance == o.reflectance &&
       indexOfRefraction == o.indexOfRefraction && textures == o.textures &&
-      edges == o.edges;
+      edges == o.edges && physical == o.physical;
   }
   bool operator!=(const Material& o) const { return !(*this == o); }
 };

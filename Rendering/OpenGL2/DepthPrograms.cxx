@@ -27,14 +27,15 @@ static_assert(
 } // namespace
 
 //------------------------------------------------------------------------------
-DepthPrograms::DepthPrograms(
-  vtkOpenGLRenderWindow* window, const Shaders& shaders, bool corners, const Tables& tables,
-  float offsets)
+DepthPrograms::DepthPrograms(vtkOpenGLRenderWindow* window, const Snapshot& snapshot,
+  const Shaders& shaders, bool corners, const Tables& tables, float offsets)
   : Window(window)
+  , Scene(snapshot)
   , Sources(shaders)
   , AllCorners(corners)
   , From(tables)
   , Offsets(offsets)
+  , Throttle(snapshot.triangleCount)
 {
 }
 
@@ -120,10 +121,9 @@ bool DepthPrograms::use(unsigned int kind)
 }
 
 //------------------------------------------------------------------------------
-bool DepthPrograms::draw(
-  const Snapshot& snapshot, std::size_t part, const glm::dmat4& worldToClip)
+bool DepthPrograms::draw(std::size_t part, const glm::dmat4& worldToClip)
 {
-  const Part& of = snapshot.parts[part];
+  const Part& of = this->Scene.parts[part];
   const unsigned int kind = this->kindOf(of);
   if (!this->use(kind))
   {
@@ -154,12 +154,12 @@ bool DepthPrograms::draw(
   if ((kind & Corners) == 0)
   {
     set("vertexToTriangle", geometry.vertexToTriangle(part));
-    geometry.draw(part);
+    geometry.draw(part, this->Throttle);
     return true;
   }
   set("cornerToTriangle", geometry.cornerToTriangle(part));
   set("part", static_cast<int>(part));
-  geometry.drawCorners(part);
+  geometry.drawCorners(part, this->Throttle);
   return true;
 }
 

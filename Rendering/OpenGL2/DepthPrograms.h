@@ -25,7 +25,7 @@ namespace gl
 class DepthPrograms
 {
 public:
-  // What parts are drawn from; all must outlive it. Of parts and textures only perforated ones ask.
+  // What parts are drawn from; all must outlive it, and so must the snapshot. Of parts and textures only perforated ones ask.
   struct Tables
   {
     const GeometryBuffers& geometry;
@@ -42,14 +42,14 @@ public:
 
   // `corners`: all parts are drawn corner by corner. `offsets`: what a polygon offset adds to the stored
   // depth, 1 or -1; 0: nothing.
-  DepthPrograms(vtkOpenGLRenderWindow* window, const Shaders& shaders, bool corners,
-    const Tables& tables, float offsets = 0.0f);
+  DepthPrograms(vtkOpenGLRenderWindow* window, const Snapshot& snapshot, const Shaders& shaders,
+    bool corners, const Tables& tables, float offsets = 0.0f);
   ~DepthPrograms();
   DepthPrograms(const DepthPrograms&) = delete;
   DepthPrograms& operator=(const DepthPrograms&) = delete;
 
   // Draws a part. False after an error message.
-  bool draw(const Snapshot& snapshot, std::size_t part, const glm::dmat4& worldToClip);
+  bool draw(std::size_t part, const glm::dmat4& worldToClip);
 
 private:
   // What a part needs, as bits.
@@ -68,12 +68,14 @@ private:
   void bindTables(vtkShaderProgram* program);
 
   vtkOpenGLRenderWindow* Window;
+  const Snapshot& Scene;
   Shaders Sources;
   bool AllCorners;
   Tables From;
   float Offsets;
   std::array<vtkShaderProgram*, KindCount> Programs{};
   vtkShaderProgram* Current = nullptr;
+  DrawThrottle Throttle;
   std::unique_ptr<ScopedTextureUnits> Units; // of the tables, for the programs that fetch
 };
 

@@ -382,19 +382,23 @@ void GeometryBuffers::bindForDrawing(GLuint program) const
 }
 
 //------------------------------------------------------------------------------
-void GeometryBuffers::draw(std::size_t part) const
+void GeometryBuffers::draw(std::size_t part, DrawThrottle& throttle) const
 {
   const Slot& slot = this->Slots[part];
-  const std::size_t offset = 3 * sizeof(std::uint32_t) * slot.place;
-  const auto corners = static_cast<GLsizei>(3 * slot.triangles);
+  const auto placeOf = [&](std::size_t triangle) {
+    return reinterpret_cast<const void*>(3 * sizeof(std::uint32_t) * (slot.place + triangle));
+  };
   if (slot.copiesVersion == 0)
   {
-    glDrawElements(
-      GL_TRIANGLES, corners, GL_UNSIGNED_INT, reinterpret_cast<const void*>(offset));
+    throttle.draw(slot.triangles, [&](std::size_t first, std::size_t count) {
+      glDrawElements(
+        GL_TRIANGLES, static_cast<GLsizei>(3 * count), GL_UNSIGNED_INT, placeOf(first));
+    });
     return;
   }
-  glDrawElementsInstanced(GL_TRIANGLES, corners, GL_UNSIGNED_INT,
-    reinterpret_cast<const void*>(offset), static_cast<GLsizei>(slot.copies));
+  glDrawElementsInstanced(GL_TRIANGLES, static_cast<GLsizei>(3 * slot.triangles), GL_UNSIGNED_INT,
+    placeOf(0), static_cast<GLsizei>(slot.copies));
+  throttle.drawn(slot.triangles * slot.copies);
 }
 
 //------------------------------------------------------------------------------
@@ -411,17 +415,20 @@ void GeometryBuffers::bindForFetching() const
 }
 
 //------------------------------------------------------------------------------
-void GeometryBuffers::drawCorners(std::size_t part) const
+void GeometryBuffers::drawCorners(std::size_t part, DrawThrottle& throttle) const
 {
   const Slot& slot = this->Slots[part];
-  const auto first = static_cast<GLint>(3 * slot.place);
-  const auto corners = static_cast<GLsizei>(3 * slot.triangles);
   if (slot.copiesVersion == 0)
   {
-    glDrawArrays(GL_TRIANGLES, first, corners);
+    throttle.draw(slot.triangles, [&](std::size_t first, std::size_t count) {
+      glDrawArrays(GL_TRIANGLES, static_cast<GLint>(3 * (slot.place + first)),
+        static_cast<GLsizei>(3 * count));
+    });
     return;
   }
-  glDrawArraysInstanced(GL_TRIANGLES, first, corners, static_cast<GLsizei>(slot.copies));
+  glDrawArraysInstanced(GL_TRIANGLES, static_cast<GLint>(3 * slot.place),
+    static_cast<GLsizei>(3 * slot.triangles), static_cast<GLsizei>(slot.copies));
+  throttle.drawn(slot.triangles * slot.copies);
 }
 
 //------------------------------------------------------------------------------

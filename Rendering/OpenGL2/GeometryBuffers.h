@@ -6,6 +6,7 @@
 // VertexOrder.h. Depends on geometry only: parts' matrices and materials are in PartTables.
 #pragma once
 
+#include "Rendering/OpenGL2/DrawThrottle.h"
 #include "Rendering/OpenGL2/ObjectPool.h"
 
 #include "Rendering/Core/Snapshot.h"
@@ -40,7 +41,7 @@ public:
   // which a last corner's gl_VertexID is vertexToTriangle() less than the triangle's number. Of a part
   // with copies each is an instance, and the number that of the first copy.
   void bindForDrawing(GLuint program) const;
-  void draw(std::size_t part) const;
+  void draw(std::size_t part, DrawThrottle& throttle) const;
   int vertexToTriangle(std::size_t part) const;
 
   // Where the rows of a part's copies lie in the table of positions, and how many texels each takes:
@@ -54,7 +55,7 @@ public:
   // The same without shared vertices, for a program that fetches them by itself from the tables.
   // A corner's gl_VertexID / 3 is cornerToTriangle() less than the triangle's number.
   void bindForFetching() const;
-  void drawCorners(std::size_t part) const;
+  void drawCorners(std::size_t part, DrawThrottle& throttle) const;
   int cornerToTriangle(std::size_t part) const;
 
   // Binds the tables from the given unit on, in the order of the RayCaster's samplers; returns the

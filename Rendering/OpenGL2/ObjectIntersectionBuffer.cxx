@@ -104,7 +104,7 @@ bool ObjectIntersectionBuffer::draw(vtkOpenGLRenderWindow* window, const Snapsho
   }
   const bool direct = this->Mode == Visibility::DirectRendering;
   DepthPrograms programs(
-    window, { ItemBuffer_vs, ItemBuffer_fs, DirectRendering_fs }, direct, tables,
+    window, snapshot, { ItemBuffer_vs, ItemBuffer_fs, DirectRendering_fs }, direct, tables,
     this->Convention.direction());
   const GLuint noHit[4] = { 0, 0, 0, 0 };
   const GLfloat far = this->Convention.clearDepth();
@@ -124,7 +124,7 @@ bool ObjectIntersectionBuffer::draw(vtkOpenGLRenderWindow* window, const Snapsho
       continue;
     }
     setCulling(window->GetState(), snapshot.parts[i].material);
-    if (!programs.draw(snapshot, i, toClip))
+    if (!programs.draw(i, toClip))
     {
       return false;
     }

@@ -60,6 +60,11 @@ void appendPart(std::vector<glm::vec4>& table, const Part& part, const glm::dmat
   table.emplace_back(edges.width,
     part.material.cullFront || part.material.cullBack ? 1.0f : 0.0f, edges.tubes ? 1.0f : 0.0f,
     0.0f);
+  const PhysicalTerms& physical = part.material.physical;
+  table.emplace_back(physical.edgeTint, physical.roughness);
+  table.emplace_back(physical.coatColor, physical.coat);
+  table.emplace_back(physical.used ? physical.metallic : -1.0f, physical.f0,
+    physical.coatRoughness, physical.coatF0);
 }
 
 void appendLight(std::vector<glm::vec4>& table, const Light& light, bool singleHeadlight,

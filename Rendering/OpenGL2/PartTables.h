@@ -22,6 +22,8 @@ namespace gl
 //           13-15 rows x, y, w of the texture transform with (place of the textures' descriptions in
 //           this table, their number, 0); the descriptions follow all parts: see TextureBuffers.h
 //           16-17 edges: (colour, opacity) (width, one side is culled, tubes, 0)
+//           18-20 physically based: (edge tint, roughness) (coat colour, coat)
+//           (metallic, f0, coat roughness, coat f0), metallic -1 where it is not
 //   layout: (first triangle, normals, colours, coordinates)
 //           (lookup start, width, height, first vertex)
 //           (normals of triangles, colours of triangles, texture coordinates, sides)
@@ -29,7 +31,7 @@ namespace gl
 //           copies among the positions, texels a copy)
 //   light:  (position, kind) (direction, cosine of the cone) (colour, exponent)
 //           (attenuation, 0) (first shadow face, number of faces, 0, 0)
-inline constexpr int kPartTexels = 18;
+inline constexpr int kPartTexels = 21;
 inline constexpr int kLayoutTexels = 4;
 inline constexpr int kLightTexels = 5;
 

@@ -11,6 +11,7 @@
 #include "Edges.h"
 #include "Holes.h"
 #include "Offset.h"
+#include "Pbr.h"
 #include "RayCaster_fs.h"
 #include "Shading.h"
 #include "ShadowLookup.h"
@@ -47,6 +48,7 @@ std::string definitions(const SurfaceFeatures& features)
   text << "#define real float\n#define HRT_FUNCTION\n";
   text << (features.textures ? "#define HRT_TEXTURES\n" : "");
   text << (features.edges ? "#define HRT_EDGES\n" : "");
+  text << (features.physical ? "#define HRT_PHYSICAL\n" : "");
   text << (features.copies ? "#define HRT_COPIES\n" : "");
   text << "#define PART_TEXELS " << kPartTexels << "\n";
   text << "#define LAYOUT_TEXELS " << kLayoutTexels << "\n";
@@ -85,6 +87,7 @@ std::string rayCasterSource(const SurfaceFeatures& features)
   vtkShaderProgram::Substitute(text, "//HRT::Textures",
     features.textures ? std::string(TextureFetch) + TextureLookup : std::string());
   vtkShaderProgram::Substitute(text, "//HRT::Edges", features.edges ? Edges : "");
+  vtkShaderProgram::Substitute(text, "//HRT::Physical", features.physical ? Pbr : "");
   return text;
 }
 

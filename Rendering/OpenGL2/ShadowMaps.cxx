@@ -125,7 +125,7 @@ bool ShadowMaps::draw(vtkOpenGLRenderWindow* window, const Snapshot& snapshot,
     return false;
   }
   DepthPrograms programs(
-    window, { ShadowMap_vs, ShadowMap_fs, ShadowMap_fs }, false, tables);
+    window, snapshot, { ShadowMap_vs, ShadowMap_fs, ShadowMap_fs }, false, tables);
   target.beginDepthPass(this->Convention);
   ScopedDepthConvention depth(this->Convention);
   const GLfloat clear = this->Convention.clearDepth();
@@ -151,7 +151,7 @@ bool ShadowMaps::draw(vtkOpenGLRenderWindow* window, const Snapshot& snapshot,
       {
         if (casters[p])
         {
-          if (!programs.draw(snapshot, p, toClip))
+          if (!programs.draw(p, toClip))
           {
             return false;
           }

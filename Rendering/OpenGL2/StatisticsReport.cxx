@@ -92,12 +92,13 @@ void rays(std::ostream& out, const RayCount& count)
 // What the scene's surfaces have beside plain colours.
 void surfaces(std::ostream& out, const Snapshot& snapshot)
 {
-  std::size_t textured = 0, withEdges = 0;
+  std::size_t textured = 0, withEdges = 0, physical = 0;
   std::map<std::uint64_t, std::size_t> texels; // by texture: one that several parts show counts once
   for (const Part& part : snapshot.parts)
   {
     textured += part.material.textures.layers.empty() ? 0 : 1;
     withEdges += part.showsEdges() ? 1 : 0;
+    physical += part.material.physical.used ? 1 : 0;
     for (const TextureLayer& layer : part.material.textures.layers)
     {
       texels[layer.texture->version] = layer.texture->texelCount();
@@ -109,6 +110,7 @@ void surfaces(std::ostream& out, const Snapshot& snapshot)
     std::accumulate(texels.begin(), texels.end(), std::size_t(0),
       [](std::size_t sum, const auto& texture) { return sum + texture.second; }));
   object.number("with_edges", withEdges);
+  object.number("physically_based", physical);
 }
 
 void props(std::ostream& out, const PropReasons& list)

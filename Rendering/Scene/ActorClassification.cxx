@@ -36,6 +36,13 @@ bool hasOwnShaders(vtkActor* actor)
       shaders->HasFragmentShaderCode() || shaders->HasGeometryShaderCode());
 }
 
+bool hasPhysicalTextures(vtkActor* actor)
+{
+  const auto& textures = actor->GetProperty()->GetAllTextures();
+  return std::any_of(textures.begin(), textures.end(),
+    [](const auto& entry) { return entry.second && isPhysicalTexture(entry.first); });
+}
+
 } // anonymous namespace
 
 //------------------------------------------------------------------------------
@@ -85,8 +92,10 @@ const char* describe(LeftToVTK reason)
       return "its texture has mip maps";
     case LeftToVTK::OtherTexture:
       return "its texture is not an image that can be read";
+    case LeftToVTK::LitByImage:
+      return "physically based and lit by an environment image";
     case LeftToVTK::PhysicallyBased:
-      return "physically based material";
+      return "physically based with textures or anisotropy";
     case LeftToVTK::ShaderReplacements:
       return "shader replacements";
   }
@@ -120,6 +129,7 @@ bool seenByRays(LeftToVTK reason)
     case LeftToVTK::Translucent:
     case LeftToVTK::MipMappedTexture:
     case LeftToVTK::OtherTexture:
+    case LeftToVTK::LitByImage:
     case LeftToVTK::PhysicallyBased:
     case LeftToVTK::ShaderReplacements:
       return true;
@@ -157,12 +167,18 @@ LeftToVTK classifyActor(vtkActor* actor)
 }
 
 //------------------------------------------------------------------------------
-LeftToVTK classifySurface(vtkActor* actor, bool isGlass)
+LeftToVTK classifySurface(vtkActor* actor, bool isGlass, bool litByImage)
 {
-  vtkProperty* property = actor->GetProperty();
-  if (property->GetInterpolation() == VTK_PBR)
+  if (isPhysicallyBased(actor))
   {
-    return LeftToVTK::PhysicallyBased;
+    if (litByImage)
+    {
+      return LeftToVTK::LitByImage;
+    }
+    if (actor->GetProperty()->GetAnisotropy() > 0.0 || hasPhysicalTextures(actor))
+    {
+      return LeftToVTK::PhysicallyBased;
+    }
   }
   if (hasOwnShaders(actor))
   {
@@ -174,6 +190,22 @@ LeftToVTK classifySurface(vtkActor* actor, bool isGlass)
     return LeftToVTK::Translucent;
   }
   return LeftToVTK::No;
+}
+
+//------------------------------------------------------------------------------
+bool isPhysicallyBased(vtkActor* actor)
+{
+  vtkProperty* property = actor->GetProperty();
+  return property->GetInterpolation() == VTK_PBR && property->GetLighting();
+}
+
+//------------------------------------------------------------------------------
+bool isPhysicalTexture(const std::string& name)
+{
+  static const char* const kNames[] = { "albedoTex", "normalTex", "materialTex", "brdfTex",
+    "emissiveTex", "anisotropyTex", "coatNormalTex", "colortexture" };
+  return std::any_of(
+    std::begin(kNames), std::end(kNames), [&name](const char* other) { return name == other; });
 }
 
 //------------------------------------------------------------------------------

@@ -5,6 +5,8 @@
 // statistics can say why.
 #pragma once
 
+#include <string>
+
 class vtkActor;
 class vtkProp;
 
@@ -42,6 +44,7 @@ enum class LeftToVTK
   // Its triangles are known, and seen in mirrors, but its picture is more than shaded triangles.
   MipMappedTexture,
   OtherTexture,
+  LitByImage,
   PhysicallyBased,
   ShaderReplacements
 };
@@ -62,7 +65,14 @@ LeftToVTK classifyProp(vtkProp* prop);
 LeftToVTK classifyActor(vtkActor* actor);
 
 // The rest of the rules, for an actor that passed and whose pipeline is up to date.
-LeftToVTK classifySurface(vtkActor* actor, bool isGlass);
+// `litByImage`: the renderer lights physically based surfaces by its environment texture.
+LeftToVTK classifySurface(vtkActor* actor, bool isGlass, bool litByImage);
+
+// VTK lights it by its physically based equations: then it shows no textures but those that these use.
+bool isPhysicallyBased(vtkActor* actor);
+
+// Whether physically based shading knows a property's texture by that name; Phong's leaves it out.
+bool isPhysicalTexture(const std::string& name);
 
 // Some light passes, by opacity of either side, of scalars, or by force.
 bool isTranslucent(vtkActor* actor);

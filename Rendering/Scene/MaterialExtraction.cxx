@@ -94,6 +94,24 @@ EdgeStyle edgeStyle(vtkProperty* property)
 }
 
 //------------------------------------------------------------------------------
+PhysicalTerms physicalTerms(vtkProperty* property)
+{
+  PhysicalTerms terms;
+  terms.used = property->GetInterpolation() == VTK_PBR && property->GetLighting();
+  terms.metallic = static_cast<float>(property->GetMetallic());
+  terms.roughness = static_cast<float>(property->GetRoughness());
+  terms.f0 = static_cast<float>(property->ComputeReflectanceOfBaseLayer());
+  terms.edgeTint = toColor(property->GetEdgeTint());
+  terms.coat = static_cast<float>(property->GetCoatStrength());
+  terms.coatRoughness = static_cast<float>(property->GetCoatRoughness());
+  // The coat lies in air.
+  terms.coatF0 =
+    static_cast<float>(vtkProperty::ComputeReflectanceFromIOR(property->GetCoatIOR(), 1.0));
+  terms.coatColor = toColor(property->GetCoatColor());
+  return terms;
+}
+
+//------------------------------------------------------------------------------
 // As vtkOpenGLPolyDataMapper has it for polygons and strips: GetCoincidentParameters, and what its
 // fragment shader makes of them. 65000 steps are what it takes a depth buffer for at least. Before VTK
 // 9.3 the factor is not used.
@@ -153,6 +171,7 @@ Material extractMaterial(vtkActor* actor, const RayKeys& keys, ColorSource color
   apply(overrides, material.back);
   material.lit = property->GetLighting();
   material.edges = edgeStyle(property);
+  material.physical = physicalTerms(property);
   material.cullFront = property->GetFrontfaceCulling() != 0;
   material.cullBack = property->GetBackfaceCulling() != 0;
   material.depthOffset = depthOffset(actor);

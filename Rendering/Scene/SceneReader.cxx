@@ -119,6 +119,7 @@ struct SceneReader::Draft
 {
   Frame frame;
   std::vector<const vtkProp*> viewProps; // of the parts: what the renderer holds
+  bool litByImage = false; // the renderer's environment lights physically based surfaces
   TriangleNumbers numbers;
   SceneBox box;
   std::uint64_t lastPath = 0; // that was given a number
@@ -314,7 +315,7 @@ LeftToVTK SceneReader::addPieces(const ActorPath& path, const MapperReading& rea
 {
   Snapshot& snapshot = *draft.frame.snapshot;
   const bool isGlass = keys.indexOfRefraction > 0.0;
-  LeftToVTK left = classifySurface(path.actor, isGlass);
+  LeftToVTK left = classifySurface(path.actor, isGlass, draft.litByImage);
   if (!seenByRays(left))
   {
     this->keep(path);
@@ -497,6 +498,8 @@ Frame SceneReader::read(
 {
   Draft draft;
   Snapshot& snapshot = *draft.frame.snapshot;
+  draft.litByImage =
+    renderer->GetUseImageBasedLighting() && renderer->GetEnvironmentTexture() != nullptr;
   this->Warnings.abandonUpdate(); // one that an exception has ended
   this->Errors.abandonUpdate();
   const std::vector<ActorPath> paths = actorPaths(renderer);

@@ -1,6 +1,8 @@
 // See TextureExtraction.h.
 #include "Rendering/Scene/TextureExtraction.h"
 
+#include "Rendering/Scene/ActorClassification.h"
+
 #include "vtkActor.h"
 #include "vtkAlgorithm.h"
 #include "vtkDataArray.h"
@@ -275,19 +277,13 @@ Texture::Alpha combined(const std::vector<TextureLayer>& layers)
 }
 
 //------------------------------------------------------------------------------
-// The names by which physically based shading knows its textures; plain shading leaves them out.
-bool isOfPhysicalShading(const std::string& name)
-{
-  static const char* const kNames[] = { "albedoTex", "normalTex", "materialTex", "brdfTex",
-    "emissiveTex", "anisotropyTex", "coatNormalTex", "colortexture" };
-  return std::any_of(std::begin(kNames), std::end(kNames),
-    [&name](const char* other) { return name == other; });
-}
-
-//------------------------------------------------------------------------------
 std::vector<vtkTexture*> shownTextures(vtkActor* actor)
 {
   std::vector<vtkTexture*> all;
+  if (isPhysicallyBased(actor))
+  {
+    return all;
+  }
   if (actor->GetTexture())
   {
     all.push_back(actor->GetTexture());
@@ -295,7 +291,7 @@ std::vector<vtkTexture*> shownTextures(vtkActor* actor)
   const std::map<std::string, vtkTexture*>& named = actor->GetProperty()->GetAllTextures();
   for (const auto& entry : named)
   {
-    if (entry.second && !isOfPhysicalShading(entry.first))
+    if (entry.second && !isPhysicalTexture(entry.first))
     {
       all.push_back(entry.second);
     }

@@ -88,8 +88,12 @@ def translucent():
     return ball(0.3, 0.6, Opacity=0.4, Color=(0.9, 0.2, 0.9))
 
 
-def physically_based():
-    return ball(0.5, 0.4, Interpolation=3, Metallic=0.4, Roughness=0.3, Color=(0.9, 0.9, 0.5))
+def physically_based(**properties):
+    return ball(0.5, 0.4, Interpolation=3, Metallic=0.4, Roughness=0.3, Color=(0.9, 0.9, 0.5), **properties)
+
+
+def anisotropic():
+    return physically_based(Anisotropy=0.5)
 
 
 def text():
@@ -122,7 +126,7 @@ def volume(mapper=None):
     return actor
 
 
-GUESTS = [lines, points, wireframe, mip_mapped, translucent, physically_based, text, volume]
+GUESTS = [lines, points, wireframe, mip_mapped, translucent, anisotropic, text, volume]
 
 
 def compare(renderer, render):

@@ -20,6 +20,7 @@ Facts gatherFacts(const Snapshot& snapshot, const PixelBounds& bounds)
     facts.glassInView = facts.glassInView || (seen && part.material.isGlass());
     facts.features.textures =
       facts.features.textures || (seen && !part.material.textures.layers.empty());
+    facts.features.physical = facts.features.physical || (seen && part.material.physical.used);
     facts.features.edges = facts.features.edges || (seen && part.showsEdges());
     facts.features.copies = facts.features.copies || (seen && part.copies);
     facts.anyCaster =

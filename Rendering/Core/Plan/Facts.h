@@ -26,6 +26,7 @@ struct SurfaceFeatures
 {
   bool textures = false;
   bool edges = false;
+  bool physical = false;
   bool copies = false; // see Copies.h
 };
 

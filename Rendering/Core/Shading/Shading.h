@@ -33,7 +33,9 @@ using glm::normalize;
 using glm::pow;
 using glm::reflect;
 using glm::sign;
+using glm::sqrt;
 #include "Rendering/Core/Shading/Shading.glsl"
+#include "Rendering/Core/Surface/Pbr.glsl"
 #include "Rendering/Core/Surface/Surface.glsl"
 }
 
@@ -61,6 +63,7 @@ using glm::pow;
 using glm::reflect;
 using glm::sign;
 #include "Rendering/Core/Shading/Shading.glsl"
+#include "Rendering/Core/Surface/Pbr.glsl"
 #include "Rendering/Core/Surface/Surface.glsl"
 }
 } // namespace hrt

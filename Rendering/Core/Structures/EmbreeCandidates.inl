@@ -104,19 +104,22 @@ private:
       pick(this->Of.rays.direction[axis], rayOf, lanes.direction[axis]);
     }
     pick(this->Of.rays.last, rayOf, lanes.last);
-    const float* positions[kLanes];
-    ExactPositions position{};
+    const float* corners[3][kLanes];
+    ExactPositions positions{};
     for (unsigned int i = 0; i < kLanes; ++i)
     {
-      position = this->OfHierarchy.positionsOf(blockOf(placeOf[i]), laneOf(placeOf[i]));
-      positions[i] = position.first;
+      positions = this->OfHierarchy.positionsOf(blockOf(placeOf[i]), laneOf(placeOf[i]));
+      for (int corner = 0; corner < 3; ++corner)
+      {
+        corners[corner][i] = positions.corner[corner];
+      }
     }
     for (int corner = 0; corner < 3; ++corner)
     {
       for (int axis = 0; axis < 3; ++axis)
       {
-        store(lanes.position[corner][axis],
-          gather(positions, corner * position.cornerStep + axis * position.axisStep));
+        store(
+          lanes.position[corner][axis], gather(corners[corner], axis * positions.axisStep));
       }
     }
     const Member& member = this->memberOf(placeOf[0]);

@@ -48,56 +48,119 @@ bool isAdmissible(const std::array<glm::vec3, 3>& c)
   return hrt::isAdmissible(c[0]) && hrt::isAdmissible(c[1]) && hrt::isAdmissible(c[2]);
 }
 
-// Triangles that cannot be binned, not finite or beyond the largest coordinate, are left out. The
-// scene's door refuses them; a snapshot made otherwise must do no harm either.
-std::vector<RTCBuildPrimitive> boxesOf(const std::vector<SourceTriangle>& triangles)
+// By the exact kernel's own arithmetic, then rounded.
+std::array<glm::vec3, 3> placedCorners(
+  const Geometry& geometry, const glm::dmat4& placement, std::size_t triangle)
 {
-  std::vector<RTCBuildPrimitive> boxes;
-  boxes.reserve(triangles.size());
-  for (std::size_t i = 0; i < triangles.size(); ++i)
-  {
-    const std::array<glm::vec3, 3>& c = triangles[i].corner;
-    if (isAdmissible(c))
-    {
-      const glm::vec3 lower = glm::min(c[0], glm::min(c[1], c[2]));
-      const glm::vec3 upper = glm::max(c[0], glm::max(c[1], c[2]));
-      boxes.push_back(
-        { lower.x, lower.y, lower.z, 0, upper.x, upper.y, upper.z, static_cast<unsigned int>(i) });
-    }
-  }
-  return boxes;
+  const Corners c = sceneCorners(geometry, placement, triangle);
+  return { glm::vec3(c.a), glm::vec3(c.b), glm::vec3(c.c) };
 }
+
+// The triangles of all members, numbered one after the other.
+class AllTriangles
+{
+public:
+  explicit AllTriangles(const std::vector<MemberMesh>& members)
+    : Members(members)
+  {
+    std::size_t first = 0;
+    for (const MemberMesh& member : members)
+    {
+      this->First.push_back(first);
+      first += member.geometry->triangleCount();
+    }
+    this->Count = first;
+  }
+
+  std::size_t size() const { return this->Count; }
+
+  struct Place
+  {
+    std::uint32_t member, triangle;
+  };
+  Place placeOf(std::size_t number) const
+  {
+    const auto next = std::upper_bound(this->First.begin(), this->First.end(), number);
+    const auto member = static_cast<std::size_t>(next - this->First.begin()) - 1;
+    return { static_cast<std::uint32_t>(member),
+      static_cast<std::uint32_t>(number - this->First[member]) };
+  }
+  std::array<glm::vec3, 3> cornersOf(const Place& place) const
+  {
+    return this->Members[place.member].cornersOf(place.triangle);
+  }
+
+  // Triangles that cannot be binned, not finite or beyond the largest coordinate, are left out. The
+  // scene's door refuses them; a snapshot made otherwise must do no harm either.
+  std::vector<RTCBuildPrimitive> boxes() const
+  {
+    std::vector<RTCBuildPrimitive> boxes;
+    boxes.reserve(this->Count);
+    for (std::size_t i = 0; i < this->Members.size(); ++i)
+    {
+      for (std::size_t k = 0; k < this->Members[i].geometry->triangleCount(); ++k)
+      {
+        const std::array<glm::vec3, 3> c = this->Members[i].cornersOf(k);
+        if (isAdmissible(c))
+        {
+          const glm::vec3 lower = glm::min(c[0], glm::min(c[1], c[2]));
+          const glm::vec3 upper = glm::max(c[0], glm::max(c[1], c[2]));
+          boxes.push_back({ lower.x, lower.y, lower.z, 0, upper.x, upper.y, upper.z,
+            static_cast<unsigned int>(this->First[i] + k) });
+        }
+      }
+    }
+    return boxes;
+  }
+
+private:
+  const std::vector<MemberMesh>& Members;
+  std::vector<std::size_t> First; // of each member
+  std::size_t Count = 0;
+};
 
 } // namespace
 
-Hierarchy::Hierarchy(Device& device, const std::vector<SourceTriangle>& triangles,
-  const std::vector<std::array<glm::vec3, 3>>& positions)
+std::array<glm::vec3, 3> MemberMesh::cornersOf(std::size_t triangle) const
 {
-  std::vector<RTCBuildPrimitive> boxes = boxesOf(triangles);
-  this->Complete = boxes.size() == triangles.size();
-  const std::vector<WideTree::Leaf> leaves =
-    this->Tree.build(device, boxes, kLanes, "building a geometry's hierarchy");
+  return this->placement ? placedCorners(*this->geometry, *this->placement, triangle)
+                         : this->geometry->cornerPositions(triangle);
+}
+
+Hierarchy::Hierarchy(Device& device, const std::vector<MemberMesh>& members)
+{
+  const AllTriangles triangles(members);
+  std::vector<WideTree::Leaf> leaves;
+  {
+    std::vector<RTCBuildPrimitive> boxes = triangles.boxes();
+    this->Complete = boxes.size() == triangles.size();
+    leaves = this->Tree.build(device, boxes, kLanes, "building a geometry's hierarchy");
+  }
   this->Blocks.resize(leaves.size());
-  const bool severalMembers = std::any_of(triangles.begin(), triangles.end(),
-    [](const SourceTriangle& triangle) { return triangle.member != 0; });
+  if (members.size() > 1)
+  {
+    this->Members.resize(leaves.size() * kLanes);
+  }
   for (std::size_t block = 0; block < leaves.size(); ++block)
   {
     const WideTree::Leaf& leaf = leaves[block];
     for (std::uint32_t lane = 0; lane < kLanes; ++lane)
     {
       const bool used = lane < leaf.count;
-      const std::uint32_t number = leaf.box[used ? lane : 0];
-      const SourceTriangle& triangle = triangles[number];
-      this->setLane(block, static_cast<int>(lane), triangle.corner);
-      this->Blocks[block].triangle[lane] = used ? triangle.triangle : kNoTriangle;
-      if (severalMembers)
+      const AllTriangles::Place place = triangles.placeOf(leaf.box[used ? lane : 0]);
+      this->setLane(block, static_cast<int>(lane), triangles.cornersOf(place));
+      this->Blocks[block].triangle[lane] = used ? place.triangle : kNoTriangle;
+      if (!this->Members.empty())
       {
-        this->Members.push_back(triangle.member);
+        this->Members[block * kLanes + lane] = place.member;
       }
-      if (!positions.empty())
-      {
-        this->OwnPositions.push_back(positions[number]);
-      }
+    }
+  }
+  for (const MemberMesh& member : members)
+  {
+    if (member.placement)
+    {
+      this->Placed.push_back(member.geometry);
     }
   }
   this->fit();
@@ -111,6 +174,20 @@ void Hierarchy::setLane(std::size_t block, int lane, const std::array<glm::vec3,
     for (int axis = 0; axis < 3; ++axis)
     {
       this->Blocks[block].corner[i][axis][lane] = corner[i][axis];
+    }
+  }
+}
+
+// Calls visit(block, lane, triangle) for every lane; an unused one repeats the first of its block.
+template <class Visit>
+void Hierarchy::forEachLane(Visit visit) const
+{
+  for (std::size_t block = 0; block < this->Blocks.size(); ++block)
+  {
+    const auto& triangle = this->Blocks[block].triangle;
+    for (int lane = 0; lane < kLanes; ++lane)
+    {
+      visit(block, lane, triangle[triangle[lane] != kNoTriangle ? lane : 0]);
     }
   }
 }
@@ -139,35 +216,31 @@ bool Hierarchy::refit(const Geometry& geometry)
   {
     return false;
   }
-  for (std::size_t block = 0; block < this->Blocks.size(); ++block)
-  {
-    for (int lane = 0; lane < kLanes; ++lane)
-    {
-      const auto& triangle = this->Blocks[block].triangle;
-      const bool used = triangle[lane] != kNoTriangle;
-      this->setLane(block, lane, geometry.cornerPositions(triangle[used ? lane : 0]));
-    }
-  }
+  this->forEachLane([&](std::size_t block, int lane, std::uint32_t triangle)
+    { this->setLane(block, lane, geometry.cornerPositions(triangle)); });
   this->fit();
   return this->isGoodEnough();
 }
 
 bool Hierarchy::refit(const std::vector<glm::dmat4>& placements)
 {
-  if (!this->Complete || this->OwnPositions.empty())
+  if (!this->Complete || this->Placed.empty())
   {
     return false;
   }
-  for (std::size_t i = 0; i < this->OwnPositions.size(); ++i)
-  {
-    const std::uint32_t member = this->Members.empty() ? 0 : this->Members[i];
-    const Corners c = sceneCorners(this->OwnPositions[i].data(), placements[member]);
-    const std::array<glm::vec3, 3> corner{ glm::vec3(c.a), glm::vec3(c.b), glm::vec3(c.c) };
-    if (!isAdmissible(corner))
+  bool admissible = true;
+  this->forEachLane(
+    [&](std::size_t block, int lane, std::uint32_t triangle)
     {
-      return false;
-    }
-    this->setLane(i / kLanes, static_cast<int>(i % kLanes), corner);
+      const std::uint32_t member = this->memberNumber(block, lane);
+      const std::array<glm::vec3, 3> corner =
+        placedCorners(*this->Placed[member], placements[member], triangle);
+      admissible = admissible && isAdmissible(corner);
+      this->setLane(block, lane, corner);
+    });
+  if (!admissible)
+  {
+    return false;
   }
   this->fit();
   return this->isGoodEnough();

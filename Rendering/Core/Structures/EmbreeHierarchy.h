@@ -9,6 +9,8 @@
 #include "Rendering/Core/Structures/WideTree.h"
 
 #include <array>
+#include <memory>
+#include <optional>
 #include <vector>
 
 namespace hrt
@@ -16,21 +18,22 @@ namespace hrt
 namespace embree
 {
 
-// A triangle in the hierarchy's coordinates.
-struct SourceTriangle
+// What a hierarchy is made from: a geometry in its own coordinates, or in those to which the placement
+// takes its positions.
+struct MemberMesh
 {
-  std::array<glm::vec3, 3> corner;
-  std::uint32_t member = 0;   // the part's number in the hierarchy
-  std::uint32_t triangle = 0; // number in the part's geometry
+  std::shared_ptr<const Geometry> geometry;
+  std::optional<glm::dmat4> placement;
+
+  std::array<glm::vec3, 3> cornersOf(std::size_t triangle) const;
 };
 
 class Hierarchy
 {
 public:
-  // `positions`: the geometries' own, a triangle's corners each, where the hierarchy's coordinates
-  // are others and their rounding has to be undone; else empty.
-  Hierarchy(Device& device, const std::vector<SourceTriangle>& triangles,
-    const std::vector<std::array<glm::vec3, 3>>& positions);
+  // Either of one geometry that is not placed, of which nothing is kept, or of placed ones, which are
+  // kept: the exact test asks for their positions, which the placement has rounded.
+  Hierarchy(Device& device, const std::vector<MemberMesh>& members);
   Hierarchy(const Hierarchy&) = delete;
   Hierarchy& operator=(const Hierarchy&) = delete;
 
@@ -57,17 +60,29 @@ public:
 
   const Member& memberOf(std::size_t block, int lane, const Member* members) const
   {
-    return members[this->Members.empty() ? 0 : this->Members[block * TriangleBlock::kLanes + lane]];
+    return members[this->memberNumber(block, lane)];
   }
+  // Of a lane in use.
   ExactPositions positionsOf(std::size_t block, int lane) const
   {
-    constexpr int n = TriangleBlock::kLanes;
-    return this->OwnPositions.empty()
-      ? ExactPositions{ &this->Blocks[block].corner[0][0][lane], 3 * n, n }
-      : ExactPositions{ &this->OwnPositions[block * n + lane][0].x, 3, 1 };
+    const TriangleBlock& of = this->Blocks[block];
+    if (this->Placed.empty())
+    {
+      return { { &of.corner[0][0][lane], &of.corner[1][0][lane], &of.corner[2][0][lane] },
+        TriangleBlock::kLanes };
+    }
+    const Geometry& mesh = *this->Placed[this->memberNumber(block, lane)];
+    const std::array<std::uint32_t, 3>& v = mesh.triangles[of.triangle[lane]];
+    return { { &mesh.positions[v[0]].x, &mesh.positions[v[1]].x, &mesh.positions[v[2]].x }, 1 };
   }
 
 private:
+  std::uint32_t memberNumber(std::size_t block, int lane) const
+  {
+    return this->Members.empty() ? 0 : this->Members[block * TriangleBlock::kLanes + lane];
+  }
+  template <class Visit>
+  void forEachLane(Visit visit) const;
   void setLane(std::size_t block, int lane, const std::array<glm::vec3, 3>& corner);
   void fit();
   bool isGoodEnough() const;
@@ -75,10 +90,8 @@ private:
 
   WideTree Tree;
   HugePageVector<TriangleBlock> Blocks;
-  // kLanes a block, unless all triangles are of one member; and if they are not those of the
-  // blocks.
-  std::vector<std::uint32_t> Members;
-  HugePageVector<std::array<glm::vec3, 3>> OwnPositions;
+  std::vector<std::uint32_t> Members; // kLanes a block, unless all triangles are of one member
+  std::vector<std::shared_ptr<const Geometry>> Placed; // by member; none if it is not placed
   TraversalBox Box;
   EntryBox Entry;
   SieveSlack Slack;

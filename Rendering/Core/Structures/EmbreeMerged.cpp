@@ -1,4 +1,4 @@
-// Implements the merging of parts: their corners go through the exact kernel's own arithmetic.
+// Implements the merging of parts.
 #include "Rendering/Core/Structures/EmbreeMerged.h"
 
 #include "Rendering/Core/Geometry/TriangleTest.h"
@@ -10,49 +10,24 @@ namespace hrt
 namespace embree
 {
 
-namespace
-{
-
-struct Triangles
-{
-  std::vector<SourceTriangle> placed;
-  std::vector<std::array<glm::vec3, 3>> positions; // in their geometries
-
-  void add(const Part& part, const glm::dvec3& anchor, std::uint32_t member)
-  {
-    const glm::dmat4 toAnchor = positionsToScene(part, anchor);
-    for (std::size_t i = 0; i < part.geometry->triangleCount(); ++i)
-    {
-      const Corners c = sceneCorners(*part.geometry, toAnchor, i);
-      this->placed.push_back({ { glm::vec3(c.a), glm::vec3(c.b), glm::vec3(c.c) }, member,
-        static_cast<std::uint32_t>(i) });
-      this->positions.push_back(part.geometry->cornerPositions(i));
-    }
-  }
-};
-
-} // namespace
-
 void MergedHierarchy::build(
   Device& device, const Snapshot& snapshot, const Grouping& grouping, Place place)
 {
   this->anchor = snapshot.origin;
   this->parts.clear();
   this->versions.clear();
-  Triangles triangles;
+  std::vector<MemberMesh> members;
   for (std::size_t i = 0; i < snapshot.parts.size(); ++i)
   {
     if (grouping.parts[i].place == place)
     {
-      triangles.add(
-        snapshot.parts[i], this->anchor, static_cast<std::uint32_t>(this->parts.size()));
+      members.push_back(
+        { snapshot.parts[i].geometry, positionsToScene(snapshot.parts[i], this->anchor) });
       this->parts.push_back(i);
       this->versions.push_back(snapshot.parts[i].geometry->version);
     }
   }
-  this->hierarchy = triangles.placed.empty()
-    ? nullptr
-    : std::make_shared<Hierarchy>(device, triangles.placed, triangles.positions);
+  this->hierarchy = members.empty() ? nullptr : std::make_shared<Hierarchy>(device, members);
 }
 
 bool MergedHierarchy::refit(const Snapshot& snapshot, const Grouping& grouping, Place place)

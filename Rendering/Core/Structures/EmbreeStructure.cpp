@@ -16,25 +16,6 @@
 
 namespace hrt
 {
-namespace embree
-{
-
-namespace
-{
-
-// The triangles of one geometry in its own coordinates.
-std::vector<SourceTriangle> localTriangles(const Geometry& geometry)
-{
-  std::vector<SourceTriangle> triangles(geometry.triangleCount());
-  for (std::size_t i = 0; i < triangles.size(); ++i)
-  {
-    triangles[i] = { geometry.cornerPositions(i), 0, static_cast<std::uint32_t>(i) };
-  }
-  return triangles;
-}
-
-} // namespace
-} // namespace embree
 
 struct EmbreeStructure::Implementation
 {
@@ -153,8 +134,8 @@ struct EmbreeStructure::Implementation
           ++report.refitted;
           return;
         }
-        current[version] = std::make_shared<embree::Hierarchy>(this->device,
-          embree::localTriangles(*part.geometry), std::vector<std::array<glm::vec3, 3>>());
+        current[version] = std::make_shared<embree::Hierarchy>(
+          this->device, std::vector<embree::MemberMesh>{ { part.geometry, std::nullopt } });
         ++report.built;
       });
     this->owns.swap(current);

@@ -22,16 +22,14 @@ struct ExactShear
   static int longestAxis(const glm::dvec3& direction);
 };
 
-// A triangle's positions in its geometry, where they lie: corner by corner, axis by axis.
+// A triangle's positions in its geometry, where they lie: the corners anywhere, their axes at one
+// distance from each other.
 struct ExactPositions
 {
-  const float* first;
-  int cornerStep, axisStep;
+  const float* corner[3];
+  int axisStep;
 
-  float operator()(int corner, int axis) const
-  {
-    return this->first[corner * this->cornerStep + axis * this->axisStep];
-  }
+  float operator()(int k, int axis) const { return this->corner[k][axis * this->axisStep]; }
 };
 
 // ShearedRay::hitsTriangle of the triangle as `toScene` places it.

@@ -74,8 +74,73 @@ void Lighting::shade(const SurfacePoint& point, const glm::dvec3& toViewer,
     target.sum += target.weight * shading::hrtUnlit(point.colors);
     return;
   }
+  if (point.material->physical.used)
+  {
+    this->shadePhysically(point, toViewer, target, shadowRays);
+    return;
+  }
   target.sum += target.weight * point.colors.ambient;
   this->addLights(point, point.colors, toViewer, target, queue, shadowRays);
+}
+
+glm::vec3 Lighting::arrivingShare(const SurfacePoint& point, std::size_t light,
+  const Target& target, RayCount& shadowRays) const
+{
+  if (!this->Settings.shadows)
+  {
+    return glm::vec3(1.0f);
+  }
+  const auto note = [&](int state)
+  { target.signature += signatureOf(PathEvent::Light, target.bounces, light, state); };
+  if (target.direct && this->Settings.shadowMaps)
+  {
+    const float share = this->shareFromMap(point, light);
+    note(share == 0.0f ? 0 : share == 1.0f ? 1 : 2);
+    return glm::vec3(share);
+  }
+  ++shadowRays.asked;
+  Ray ray;
+  const Sight seen = this->sight(point, this->Scene.lights[light], ray);
+  if (seen != Sight::Open)
+  {
+    ++shadowRays.answered;
+    note(seen == Sight::Free ? 1 : 0);
+    return glm::vec3(seen == Sight::Free ? 1.0f : 0.0f);
+  }
+  ++shadowRays.traced;
+  const bool blocked = this->Rays.occluded(ray);
+  note(blocked ? 0 : 1);
+  return blocked       ? glm::vec3(0.0f)
+    : this->AnyVeil ? this->transmittance(ray, target.bounces, target.signature)
+                    : glm::vec3(1.0f);
+}
+
+void Lighting::shadePhysically(const SurfacePoint& point, const glm::dvec3& toViewer,
+  const Target& target, RayCount& shadowRays) const
+{
+  const PhysicalTerms& terms = point.material->physical;
+  shading::HrtPhysical surface;
+  surface.albedo = point.colors.diffuse;
+  surface.metallic = terms.metallic;
+  surface.roughness = terms.roughness;
+  surface.f0 = terms.f0;
+  surface.edgeTint = terms.edgeTint;
+  surface.coat = terms.coat;
+  surface.coatRoughness = terms.coatRoughness;
+  surface.coatF0 = terms.coatF0;
+  surface.coatColor = terms.coatColor;
+  const glm::vec3 here(0.0f), normal(point.normal), viewer(toViewer);
+  glm::vec3 sum(0.0f);
+  for (std::size_t i = 0; i < this->Lights.size(); ++i)
+  {
+    const glm::vec3 portion =
+      shading::hrtShadePhysically(surface, this->lightFrom(point, i), here, normal, viewer);
+    if (portion != glm::vec3(0.0f))
+    {
+      sum += portion * this->arrivingShare(point, i, target, shadowRays);
+    }
+  }
+  target.sum += target.weight * shading::hrtEncoded(sum);
 }
 
 void Lighting::highlights(const SurfacePoint& point, const glm::dvec3& toViewer,

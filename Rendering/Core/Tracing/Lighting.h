@@ -70,6 +70,12 @@ public:
   float visibleShare(const SurfacePoint& point, std::size_t light) const;
 
 private:
+  // A physically based surface: its colour is no sum over lights, and its shadow rays are traced at once.
+  void shadePhysically(const SurfacePoint& point, const glm::dvec3& toViewer,
+    const Target& target, RayCount& shadowRays) const;
+  // The share of a light that arrives, of a portion that is not zero.
+  glm::vec3 arrivingShare(const SurfacePoint& point, std::size_t light, const Target& target,
+    RayCount& shadowRays) const;
   void addLights(const SurfacePoint& point, const shading::HrtSurface& colors,
     const glm::dvec3& toViewer, const Target& target, ShadowQueue& queue,
     RayCount& shadowRays) const;

@@ -211,6 +211,20 @@ vec4 windowCorner(int triangle, int k)
 //HRT::Edges
 #endif
 
+#ifdef HRT_PHYSICAL
+//HRT::Physical
+
+// Of the part; metallic -1 where it is Phong's.
+HrtPhysical fetchPhysical(vec3 albedo)
+{
+  vec4 base = texelFetch(partTable, partNumber * PART_TEXELS + 18);
+  vec4 coat = texelFetch(partTable, partNumber * PART_TEXELS + 19);
+  vec4 terms = texelFetch(partTable, partNumber * PART_TEXELS + 20);
+  return HrtPhysical(
+    albedo, terms.x, base.w, terms.y, base.rgb, coat.w, terms.z, terms.w, coat.rgb);
+}
+#endif
+
 vec4 shadeHit(uvec4 hit)
 {
   int triangle = int(hit.x - 1u);
@@ -295,17 +309,30 @@ vec4 shadeHit(uvec4 hit)
   if (flags.x == 1.0 && unlitScene == 0)
   {
     color = surface.ambient;
+#ifdef HRT_PHYSICAL
+    HrtPhysical physical = fetchPhysical(surface.diffuse);
+    bool isPhysical = physical.metallic >= 0.0;
+    color = isPhysical ? vec3(0.0) : color;
+#endif
     // As VTK does for every projection, the viewer is taken to be at the view coordinates' origin.
     vec3 toViewer = normalize(-p);
     for (int i = 0; i < lightCount; ++i)
     {
       HrtLight light = fetchLight(i);
+#ifdef HRT_PHYSICAL
+      vec3 term = isPhysical ? hrtShadePhysically(physical, light, p, n, toViewer)
+                             : hrtShadeLight(surface, light, p, n, toViewer);
+#else
       vec3 term = hrtShadeLight(surface, light, p, n, toViewer);
+#endif
       if (term != vec3(0.0))
       {
         color += term * lightVisibility(i, light, p, ng, flags.y);
       }
     }
+#ifdef HRT_PHYSICAL
+    color = isPhysical ? hrtEncoded(color) : color;
+#endif
   }
 #ifdef HRT_TEXTURES
   if (sides.front || flags.z == 1.0)

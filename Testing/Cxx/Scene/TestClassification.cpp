@@ -158,7 +158,49 @@ TEST_F(Classification, EdgesAreTraced)
 TEST_F(Classification, PhysicallyBased)
 {
   this->property->SetInterpolationToPBR();
-  this->expectLeftButSeen("physically based", true);
+  this->property->SetMetallic(0.25);
+  this->property->SetRoughness(0.75);
+  this->property->SetCoatStrength(0.5);
+  this->property->SetEdgeTint(1.0, 0.5, 0.25);
+  this->expectTraced();
+  const hrt::PhysicalTerms& terms = this->snapshot->parts[0].material.physical;
+  EXPECT_TRUE(terms.used);
+  EXPECT_EQ(terms.metallic, 0.25f);
+  EXPECT_EQ(terms.roughness, 0.75f);
+  EXPECT_EQ(terms.coat, 0.5f);
+  EXPECT_EQ(terms.edgeTint, glm::vec3(1.0f, 0.5f, 0.25f));
+  // Of 1.5 in air, where the coat's half is not; below the coat, of 2.
+  EXPECT_NEAR(terms.f0, 0.5 * 0.2 * 0.2 + 0.5 / 49.0, 1e-6);
+  EXPECT_NEAR(terms.coatF0, 1.0 / 9.0, 1e-6);
+  this->property->LightingOff(); // then VTK takes Phong's colours
+  this->expectTraced();
+  EXPECT_FALSE(this->snapshot->parts[0].material.physical.used);
+}
+
+TEST_F(Classification, PhysicallyBasedBeyondDirectLight)
+{
+  this->property->SetInterpolationToPBR();
+  this->expectTraced();
+  this->property->SetAnisotropy(0.5);
+  this->expectLeftButSeen("anisotropy", true);
+  this->property->SetAnisotropy(0.0);
+  vtkNew<vtkImageData> image;
+  image->SetDimensions(2, 2, 1);
+  image->AllocateScalars(VTK_UNSIGNED_CHAR, 3);
+  vtkNew<vtkTexture> texture;
+  texture->SetInputData(image);
+  this->property->SetORMTexture(texture);
+  this->expectLeftButSeen("textures", true);
+  this->property->RemoveTexture("materialTex");
+  this->expectTraced();
+  // The actor's own texture VTK does not show then.
+  this->actor->SetTexture(texture);
+  this->expectTraced();
+  EXPECT_TRUE(this->snapshot->parts[0].material.textures.layers.empty());
+  this->renderer->UseImageBasedLightingOn();
+  this->expectTraced(); // there is no image
+  this->renderer->SetEnvironmentTexture(texture);
+  this->expectLeftButSeen("environment image", true);
 }
 
 TEST_F(Classification, ShaderReplacements)
