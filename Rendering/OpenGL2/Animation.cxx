@@ -63,10 +63,10 @@ bool sharesCamera(vtkRenderer* renderer, vtkOpenGLRenderWindow* window)
 } // namespace
 
 //------------------------------------------------------------------------------
-Circumstances circumstancesOf(const vtkRenderState* state, vtkOpenGLRenderWindow* window,
+FrameConditions frameConditionsOf(const vtkRenderState* state, vtkOpenGLRenderWindow* window,
   vtkHybridScene& scene, bool buffersWanted)
 {
-  Circumstances around;
+  FrameConditions around;
   around.animation = window->GetDesiredUpdateRate() >= kAnimationRate;
   around.stereo = window->GetStereoRender() != 0;
   around.othersDraw = othersDraw(state, scene);

@@ -19,7 +19,7 @@ namespace gl
 // window's default; one frame a second parts the two.
 inline constexpr double kAnimationRate = 1.0;
 
-Circumstances circumstancesOf(const vtkRenderState* state, vtkOpenGLRenderWindow* window,
+FrameConditions frameConditionsOf(const vtkRenderState* state, vtkOpenGLRenderWindow* window,
   vtkHybridScene& scene, bool buffersWanted);
 
 // Whether the current context is a graphics card's. By the renderer's name: those of Mesa's software

@@ -91,14 +91,14 @@ Caches FrameRenderer::currentCaches(
 
 //------------------------------------------------------------------------------
 std::string FrameRenderer::render(const std::shared_ptr<const Snapshot>& snapshot,
-  const Changes& changes, const Settings& settings, const Circumstances& circumstances, int x,
+  const Changes& changes, const Settings& settings, const FrameConditions& conditions, int x,
   int y)
 {
   this->Statistics = FrameStatistics();
   this->Scene = snapshot;
   const SettingsChanges settingsChanges = compareSettings(this->LastSettings, settings);
   Facts facts = gatherFacts(*snapshot, settings.tracedBounds);
-  facts.circumstances = circumstances;
+  facts.conditions = conditions;
   const Caches caches = this->currentCaches(*snapshot, facts, settings);
   FramePlan& plan = this->Statistics.plan;
   plan = planFrame(facts, settings, settingsChanges, changes, caches);

@@ -43,7 +43,7 @@ public:
   // Renders a frame into the bound framebuffer at (x, y). The settings' bounds have been set for
   // the camera's viewport. Empty when done, else what went wrong.
   std::string render(const std::shared_ptr<const Snapshot>& snapshot, const Changes& changes,
-    const Settings& settings, const Circumstances& circumstances, int x, int y);
+    const Settings& settings, const FrameConditions& conditions, int x, int y);
 
   const FrameStatistics& statistics() const { return this->Statistics; }
   const ObjectPool& pool() const { return this->Pool; }

@@ -100,7 +100,7 @@ std::string GPUScene::updateParts(const Snapshot& snapshot, FrameStatistics& sta
 }
 
 //------------------------------------------------------------------------------
-RayCaster::Inputs GPUScene::inputs(const Snapshot& snapshot, const PixelBounds& bounds,
+PrimaryShader::Inputs GPUScene::inputs(const Snapshot& snapshot, const PixelBounds& bounds,
   const Picture& picture, const SurfaceFeatures& features) const
 {
   return { snapshot, this->Geometry, this->Tables, this->Images, this->Shadows, picture.hits, bounds,
@@ -121,7 +121,7 @@ std::string GPUScene::shade(const Snapshot& snapshot, const PixelBounds& bounds,
   return this->Caster.draw(this->Pool.window(),
            this->inputs(snapshot, bounds, picture, statistics.plan.features), picture.primary)
     ? std::string()
-    : "the ray caster could not be drawn";
+    : "the primary image could not be shaded";
 }
 
 //------------------------------------------------------------------------------

@@ -1,5 +1,5 @@
 // The scene as the GPU holds it, triangles, tables of materials and lights and shadow maps, and the
-// shading of pictures from them. These belong together: the ray caster's shader reads them all at
+// shading of pictures from them. These belong together: the primary shader reads them all at
 // once, and what of them is up to date decides whether they are made again.
 #pragma once
 
@@ -10,7 +10,7 @@
 #include "Rendering/OpenGL2/ObjectPool.h"
 #include "Rendering/OpenGL2/PartTables.h"
 #include "Rendering/OpenGL2/Picture.h"
-#include "Rendering/OpenGL2/RayCaster.h"
+#include "Rendering/OpenGL2/PrimaryShader.h"
 #include "Rendering/OpenGL2/ShadowMaps.h"
 #include "Rendering/OpenGL2/TextureBuffers.h"
 
@@ -48,7 +48,7 @@ public:
   // Shades the primary image from the picture's hits.
   std::string shade(const Snapshot& snapshot, const PixelBounds& bounds, Picture& picture,
     FrameStatistics& statistics);
-  // The visible share of one light per pixel: see RayCaster.
+  // The visible share of one light per pixel: see PrimaryShader.
   bool readShadow(const Snapshot& snapshot, const PixelBounds& bounds, const Picture& picture,
     int light, std::vector<float>& share);
 
@@ -61,7 +61,7 @@ public:
 private:
   // Textures and parts' tables, as drawing and shading look them up.
   std::string updateParts(const Snapshot& snapshot, FrameStatistics& statistics);
-  RayCaster::Inputs inputs(const Snapshot& snapshot, const PixelBounds& bounds,
+  PrimaryShader::Inputs inputs(const Snapshot& snapshot, const PixelBounds& bounds,
     const Picture& picture, const SurfaceFeatures& features) const;
 
   const ObjectPool& Pool;
@@ -69,7 +69,7 @@ private:
   TextureBuffers Images;
   PartTables Tables;
   ShadowMaps Shadows;
-  RayCaster Caster;
+  PrimaryShader Caster;
 };
 
 } // namespace gl

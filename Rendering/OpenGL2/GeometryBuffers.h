@@ -58,7 +58,7 @@ public:
   void drawCorners(std::size_t part, DrawThrottle& throttle) const;
   int cornerToTriangle(std::size_t part) const;
 
-  // Binds the tables from the given unit on, in the order of the RayCaster's samplers; returns the
+  // Binds the tables from the given unit on, in the order of the PrimaryShader's samplers; returns the
   // number of units used.
   static constexpr int kUnits = 9;
   void bindTables(int firstUnit) const;

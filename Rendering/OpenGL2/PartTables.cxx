@@ -3,7 +3,7 @@
 
 #include "Rendering/OpenGL2/GeometryBuffers.h"
 
-#include "Rendering/Core/Shading/Lighting.h"
+#include "Rendering/Core/Shading/ShadingLight.h"
 
 #include <glm/gtc/matrix_inverse.hpp>
 

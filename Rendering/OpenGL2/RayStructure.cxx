@@ -1,7 +1,7 @@
 // See RayStructure.h.
 #include "Rendering/OpenGL2/RayStructure.h"
 
-#include "Rendering/Core/Structures/EmbreeStructure.h"
+#include "Rendering/Core/Structures/BvhStructure.h"
 #include "Rendering/Core/Structures/KdTreeStructure.h"
 
 namespace hrt
@@ -17,7 +17,7 @@ std::unique_ptr<Structure> makeStructure(Accelerator kind)
   {
     return std::make_unique<KdTreeStructure>();
   }
-  return std::make_unique<EmbreeStructure>();
+  return std::make_unique<BvhStructure>();
 }
 
 } // namespace

@@ -12,7 +12,7 @@
 #include "Holes.h"
 #include "Offset.h"
 #include "Pbr.h"
-#include "RayCaster_fs.h"
+#include "PrimaryShader_fs.h"
 #include "Shading.h"
 #include "ShadowLookup.h"
 #include "Surface.h"
@@ -77,9 +77,9 @@ vtkShaderProgram* readyProgram(
 }
 
 //------------------------------------------------------------------------------
-std::string rayCasterSource(const SurfaceFeatures& features)
+std::string primaryShaderSource(const SurfaceFeatures& features)
 {
-  std::string text = RayCaster_fs;
+  std::string text = PrimaryShader_fs;
   vtkShaderProgram::Substitute(text, "//HRT::Fetch", kFetchVector);
   vtkShaderProgram::Substitute(
     text, "//HRT::Shading", definitions(features) + Shading + Surface + ShadowLookup);

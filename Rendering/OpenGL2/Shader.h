@@ -19,9 +19,9 @@ namespace gl
 vtkShaderProgram* readyProgram(
   vtkOpenGLRenderWindow* window, const std::string& vertexShader, const std::string& fragmentShader);
 
-// The ray caster's fragment shader with the shared shading source and the layouts filled in. What no
+// The primary shader's fragment stage with the shared shading source and the layouts filled in. What no
 // surface in view has is not in it: a scene does not pay for the features of others.
-std::string rayCasterSource(const SurfaceFeatures& features);
+std::string primaryShaderSource(const SurfaceFeatures& features);
 
 // A fragment shader that rasterises parts: as it is, or made to leave out the holes of their textures, or
 // to show them at other depths (DepthOffset).

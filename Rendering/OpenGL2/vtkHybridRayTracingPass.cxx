@@ -472,10 +472,10 @@ std::string vtkHybridRayTracingPass::TraceFrame(const vtkRenderState* s,
   hrt::gl::FrameRenderer& frame = in.Frame(window);
   settings.pipelined = this->Pipelined == PipelinedInAnimations ||
     (this->Pipelined == PipelinedAutomatic && frame.onHardware());
-  const hrt::Circumstances circumstances =
-    hrt::gl::circumstancesOf(s, window, *in.Scene, !in.Buffers.names().empty());
+  const hrt::FrameConditions conditions =
+    hrt::gl::frameConditionsOf(s, window, *in.Scene, !in.Buffers.names().empty());
   const std::string error = frame.render(
-    snapshot, in.Scene->GetChanges(), settings, circumstances, origin[0], origin[1]);
+    snapshot, in.Scene->GetChanges(), settings, conditions, origin[0], origin[1]);
   if (!error.empty())
   {
     return error;

@@ -98,7 +98,7 @@ public:
 
   ///@{
   /**
-   * Where the first hits are shaded. GPU: by the ray caster's fragment shader (paper, section 3.2).
+   * Where the first hits are shaded. GPU: by the fragment shader of the primary image (paper, section 3.2).
    * CPU: on all cores, starting with the first rows of the object intersection buffer that are
    * read back (paper, section 3.1); with RayCasting this is the paper's traditional ray tracer, every
    * ray on the CPU. Both use the same shading equations and look up the same shadow maps, see

@@ -10,7 +10,7 @@
 #include "Rendering/Scene/Adapters/MapperAdapter.h"
 #include "Rendering/Scene/AssemblyKeys.h"
 #include "Rendering/Scene/ClippedPieces.h"
-#include "Rendering/Scene/Complaints.h"
+#include "Rendering/Scene/Diagnostics.h"
 #include "Rendering/Scene/GeometryCache.h"
 #include "Rendering/Scene/HostedCells.h"
 #include "Rendering/Scene/MaterialExtraction.h"
@@ -120,8 +120,8 @@ private:
   GeometryCache Geometries;
   TextureCache Images;
   AssemblyKeys Keys;
-  Complaints Warnings;
-  Complaints Errors;
+  Diagnostics Warnings;
+  Diagnostics Errors;
 };
 
 } // namespace scene

@@ -19,20 +19,18 @@ namespace hrt
 namespace scene
 {
 
-// What was refused, or repaired, in one vtkPolyData.
+// What was refused in one vtkPolyData.
 struct TriangleReport
 {
   std::uint64_t nonFinitePoints = 0;
   std::uint64_t distantPoints = 0; // triangles with points that are finite, but beyond kLargestCoordinate
   std::uint64_t invalidIndices = 0;
   std::uint64_t degenerateTriangles = 0;
-  std::uint64_t replacedNormals = 0; // triangles whose normals were not numbers
 
   bool operator==(const TriangleReport& o) const
   {
     return nonFinitePoints == o.nonFinitePoints && distantPoints == o.distantPoints &&
-      invalidIndices == o.invalidIndices &&
-      degenerateTriangles == o.degenerateTriangles && replacedNormals == o.replacedNormals;
+      invalidIndices == o.invalidIndices && degenerateTriangles == o.degenerateTriangles;
   }
 };
 

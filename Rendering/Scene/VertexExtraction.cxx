@@ -219,10 +219,8 @@ void writeVertexNormals(const VectorReader& normals, const VertexPoints& pointOf
 }
 
 //------------------------------------------------------------------------------
-// Returns how many had to be replaced.
-std::size_t writeTriangleNormals(const VectorReader& normals, Geometry& geometry)
+void writeTriangleNormals(const VectorReader& normals, Geometry& geometry)
 {
-  std::size_t replaced = 0;
   geometry.normals.attachment = Attachment::Triangles;
   geometry.normals.values.reserve(geometry.triangleCount());
   for (std::size_t i = 0; i < geometry.triangleCount(); ++i)
@@ -231,11 +229,9 @@ std::size_t writeTriangleNormals(const VectorReader& normals, Geometry& geometry
     if (!areUsable({ normal, normal, normal }))
     {
       normal = faceNormal(geometry, i);
-      ++replaced;
     }
     geometry.normals.values.push_back(normal);
   }
-  return replaced;
 }
 
 //------------------------------------------------------------------------------
@@ -316,11 +312,10 @@ VertexPoints writeVertices(vtkPolyData* input, bool flat, Triangles triangles, G
   if (source.ofVertices())
   {
     writeVertexNormals(normals, pointOf, apart, geometry);
-    report.replacedNormals += apart.size();
   }
   if (source.ofTriangles())
   {
-    report.replacedNormals += writeTriangleNormals(normals, geometry);
+    writeTriangleNormals(normals, geometry);
   }
   return pointOf;
 }

@@ -1,11 +1,11 @@
 // What the kd-tree costs: its build against the number of triangles and against a naive builder, and its
-// rays against Embree - Embree's own single rays and packets over float triangles, and EmbreeStructure,
+// rays against Embree - Embree's own single rays and packets over float triangles, and BvhStructure,
 // which gives the same exact answers as the tree. One thread unless a name says otherwise.
 //
 // The machine may be shared and noisy: every benchmark is repeated, the repetitions of all are shuffled,
 // and ratios are taken of the fastest ones, which interference can only slow down.
 #include "KdTreeScenes.h"
-#include "Rendering/Core/Structures/EmbreeStructure.h"
+#include "Rendering/Core/Structures/BvhStructure.h"
 #include "Rendering/Core/Structures/KdTreeStructure.h"
 #include "Testing/Benchmarks/EmbreeQueries.h"
 #include "Testing/Cxx/Reference/NaiveKdTree.h"
@@ -33,7 +33,7 @@ struct Scene
   std::shared_ptr<Geometry> mesh;
   Snapshot snapshot;
   KdTreeStructure tree;
-  EmbreeStructure embree;
+  BvhStructure embree;
   std::map<std::string, Rays> rays;
 
   Scene()
@@ -162,14 +162,14 @@ public:
 
   bool hits(RTCRayHit ray, bool any) const
   {
-    embree::QueryContext context;
-    embree::initialize(context);
+    bvh::QueryContext context;
+    bvh::initialize(context);
     if (any)
     {
-      embree::occluded(this->Scene, context, ray.ray);
+      bvh::occluded(this->Scene, context, ray.ray);
       return ray.ray.tfar < 0.0f;
     }
-    embree::intersect(this->Scene, context, ray);
+    bvh::intersect(this->Scene, context, ray);
     return ray.hit.geomID != RTC_INVALID_GEOMETRY_ID;
   }
 
@@ -200,15 +200,15 @@ public:
   {
     alignas(64) int valid[kPacket];
     std::fill(valid, valid + kPacket, -1);
-    embree::QueryContext context;
-    embree::initialize(context);
+    bvh::QueryContext context;
+    bvh::initialize(context);
     if (any)
     {
-      embree::occluded(this->Scene, context, valid, packet.ray);
+      bvh::occluded(this->Scene, context, valid, packet.ray);
     }
     else
     {
-      embree::intersect(this->Scene, context, valid, packet);
+      bvh::intersect(this->Scene, context, valid, packet);
     }
     benchmark::DoNotOptimize(packet);
   }
@@ -437,7 +437,7 @@ void printRays(const Fastest& fastest)
     const Rays& rays = Scene::get().rays.at(kind);
     const double millions = 1e-6 * double(rays.size());
     const double native = millions / fastest.seconds(std::string("native Embree/") + kind);
-    const double exact = millions / fastest.seconds(std::string("EmbreeStructure/") + kind);
+    const double exact = millions / fastest.seconds(std::string("BvhStructure/") + kind);
     const double tree = millions / fastest.seconds(std::string("KdTreeStructure/") + kind);
     KdCounters counters;
     for (const Ray& ray : rays)
@@ -459,7 +459,7 @@ void printStreams(const Fastest& fastest)
   for (const char* kind : kKinds)
   {
     const double native = fastest.seconds(std::string("native packets/") + kind);
-    const double exact = fastest.seconds(std::string("EmbreeStructure stream/") + kind);
+    const double exact = fastest.seconds(std::string("BvhStructure stream/") + kind);
     if (native > 0.0 && exact > 0.0)
     {
       const double millions = 1e-6 * double(Scene::get().rays.at(kind).size());
@@ -491,9 +491,9 @@ void registerAll()
       [kind](benchmark::State& s) { traceNative(s, kind); });
     add(std::string("native packets/") + kind,
       [kind](benchmark::State& s) { traceNativePackets(s, kind); });
-    add(std::string("EmbreeStructure stream/") + kind,
+    add(std::string("BvhStructure stream/") + kind,
       [&, kind](benchmark::State& s) { traceStream(s, scene.embree, kind); });
-    add(std::string("EmbreeStructure/") + kind,
+    add(std::string("BvhStructure/") + kind,
       [&, kind](benchmark::State& s) { trace(s, scene.embree, kind); });
     add(std::string("KdTreeStructure/") + kind,
       [&, kind](benchmark::State& s) { trace(s, scene.tree, kind); });

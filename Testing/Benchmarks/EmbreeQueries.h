@@ -6,7 +6,7 @@
 
 namespace hrt
 {
-namespace embree
+namespace bvh
 {
 
 #if RTC_VERSION_MAJOR >= 4
@@ -85,5 +85,5 @@ inline void occluded(RTCScene scene, QueryContext& context, const int* valid, RT
 
 #endif
 
-} // namespace embree
+} // namespace bvh
 } // namespace hrt

@@ -3,7 +3,7 @@
 // drawn, so that no rasteriser's threads share the cores with what is measured. Prints one JSON object
 // a structure, for bench.py.
 #include "Rendering/Core/Snapshot.h"
-#include "Rendering/Core/Structures/EmbreeStructure.h"
+#include "Rendering/Core/Structures/BvhStructure.h"
 #include "Rendering/Core/Structures/KdTreeStructure.h"
 #include "vtkHybridBARTImporter.h"
 #include "vtkHybridScene.h"
@@ -101,7 +101,7 @@ int main(int argc, char** argv)
     return 2;
   }
   vtkObject::GlobalWarningDisplayOff(); // of triangles without area
-  hrt::EmbreeStructure embree;
+  hrt::BvhStructure embree;
   hrt::KdTreeStructure tree;
   return measure(argv[1], "Embree", embree, frames) && measure(argv[1], "kd-tree", tree, frames)
     ? 0

@@ -1,11 +1,11 @@
 // The scene's door under fire: bytes become actors whose meshes, arrays, colours and matrices may be
 // anything that vtkPolyData can hold, the scene is read twice with a change in between, and what comes
 // out must keep the snapshot's promises and be fit for the ray structure and the tracer.
+#include "Testing/Cxx/TracedImages.h"
 #include "Testing/Fuzz/Bytes.h"
 #include "Testing/Fuzz/SnapshotInvariants.h"
 
-#include "Rendering/Core/Structures/EmbreeStructure.h"
-#include "Rendering/Core/Tracing/Tracer.h"
+#include "Rendering/Core/Structures/BvhStructure.h"
 #include "Rendering/Scene/vtkHybridMaterial.h"
 #include "Rendering/Scene/vtkHybridScene.h"
 
@@ -189,7 +189,7 @@ void require(const std::string& broken)
 }
 
 // The snapshot keeps its promises, and the engines can work with it.
-void check(const hrt::Snapshot& snapshot, hrt::EmbreeStructure& structure)
+void check(const hrt::Snapshot& snapshot, hrt::BvhStructure& structure)
 {
   require(hrt::invariants::broken(snapshot));
   structure.update(snapshot);
@@ -232,7 +232,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   }
 
   vtkNew<vtkHybridScene> scene;
-  hrt::EmbreeStructure structure;
+  hrt::BvhStructure structure;
   scene->Update(renderer);
   check(*scene->GetSnapshot(), structure);
 

@@ -1,8 +1,8 @@
 // Row 18, and what it rests on: the same bytes for any number of threads, any instruction set and any
 // grouping of rays.
+#include "Testing/Cxx/TracedImages.h"
 #include "Testing/Stress/Stress.h"
 
-#include "Rendering/Core/Tracing/Tracer.h"
 
 #include <tbb/global_control.h>
 #include <tbb/task_arena.h>
@@ -159,16 +159,16 @@ TEST(InstructionSets, Row18EmbreeByEachOfThem)
 {
   const int size = isFull() ? 400 : 120;
   const Snapshot s = lively(size, size * 3 / 4);
-  EmbreeStructure own;
+  BvhStructure own;
   own.update(s);
   const Frame expected(s, own);
   int compared = 0;
   for (const char* set : { "sse2", "sse4.2", "avx", "avx2", "avx512" })
   {
-    std::unique_ptr<EmbreeStructure> structure;
+    std::unique_ptr<BvhStructure> structure;
     try
     {
-      structure = std::make_unique<EmbreeStructure>(std::string("isa=") + set);
+      structure = std::make_unique<BvhStructure>(std::string("isa=") + set);
     }
     catch (const std::exception& refusal)
     {

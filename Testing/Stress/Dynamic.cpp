@@ -1,9 +1,9 @@
 // Rows 12 to 14: a structure that has been brought up to date a hundred times answers like one that was
 // built this moment, and both like no structure at all.
 #include "Testing/Cxx/Core/KdTreeScenes.h"
+#include "Testing/Cxx/TracedImages.h"
 #include "Testing/Stress/Stress.h"
 
-#include "Rendering/Core/Tracing/Tracer.h"
 
 #include <tbb/task_arena.h>
 #include <tbb/parallel_for.h>

@@ -1,7 +1,7 @@
 // Rows 9 to 11: too many triangles in one place, too many parts, too many triangles altogether.
+#include "Testing/Cxx/TracedImages.h"
 #include "Testing/Stress/Stress.h"
 
-#include "Rendering/Core/Tracing/Tracer.h"
 
 #include <ctime>
 

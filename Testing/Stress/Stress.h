@@ -4,7 +4,7 @@
 // figure and a rule, and each runs over every structure.
 #pragma once
 
-#include "Rendering/Core/Structures/EmbreeStructure.h"
+#include "Rendering/Core/Structures/BvhStructure.h"
 #include "Rendering/Core/Structures/KdTreeStructure.h"
 #include "Rendering/Core/Structures/Structure.h"
 #include "Testing/Cxx/Core/Scenes.h"
@@ -43,7 +43,7 @@ std::unique_ptr<Structure> makeStructure()
 
 // One line a structure.
 inline const Engine kEngines[] = {
-  { "Embree", &makeStructure<EmbreeStructure> },
+  { "Embree", &makeStructure<BvhStructure> },
   { "KdTree", &makeStructure<KdTreeStructure> },
 };
 

@@ -42,7 +42,7 @@
 // would truly run into it leaves to the other side.
 #pragma once
 
-#include "Rendering/Core/Geometry/TriangleTest.h"
+#include "Rendering/Core/Geometry/TriangleIntersection.h"
 #include "Rendering/Core/Snapshot.h"
 
 #include <algorithm>

@@ -9,7 +9,6 @@ namespace hrt
 Facts gatherFacts(const Snapshot& snapshot, const PixelBounds& bounds)
 {
   Facts facts;
-  facts.triangles = snapshot.triangleCount;
   const PixelFrustum frustum(snapshot.camera, bounds);
   for (const Part& part : snapshot.parts)
   {

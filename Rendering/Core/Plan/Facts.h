@@ -5,14 +5,13 @@
 #include "Rendering/Core/PixelBounds.h"
 #include "Rendering/Core/Snapshot.h"
 
-#include <cstdint>
 #include <vector>
 
 namespace hrt
 {
 
 // What surrounds a frame, as far as pipelining needs to know.
-struct Circumstances
+struct FrameConditions
 {
   bool animation = false;     // more frames follow soon; the window asks for an interactive rate
   bool stereo = false;        // the next frame is the other eye's
@@ -33,8 +32,7 @@ struct SurfaceFeatures
 // What the scene holds, as far as the plan needs to know.
 struct Facts
 {
-  Circumstances circumstances;
-  std::uint64_t triangles = 0;        // in the snapshot
+  FrameConditions conditions;
   // Per part: the camera sees it and it meets the view frustum of the pixel bounds.
   std::vector<bool> partInView;
   bool anyPartInView = false;

@@ -11,7 +11,7 @@ StageDecision planPipelining(const Facts& facts, const Settings& settings, const
   const Changes& changes, const SettingsChanges& settingsChanges, const Dependencies& dependencies,
   const Caches& caches)
 {
-  const Circumstances& around = facts.circumstances;
+  const FrameConditions& around = facts.conditions;
   const Stage traced = settings.shadesOnCPU() ? Stage::PrimaryShading : Stage::SecondaryRays;
   return !settings.pipelined ? skip("pipelining is off")
     : !settings.rasterises() ? skip("primary rays are traced at once")

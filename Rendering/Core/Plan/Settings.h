@@ -19,7 +19,7 @@ enum class Visibility : std::uint8_t
 };
 enum class PrimaryShading : std::uint8_t
 {
-  GPU, // the ray caster's shader, shadows from maps
+  GPU, // the primary shader, shadows from maps
   CPU  // the tracer, shadows from maps that were read back or from rays
 };
 enum class Accelerator : std::uint8_t

@@ -17,7 +17,7 @@ enum class Stage : std::uint8_t
   Visibility,      // what each pixel shows: rasterised or by primary rays
   ShadowReadBack,  // shadow maps to host memory
   ReadBack,        // ids of the pixels to host memory
-  PrimaryShading,  // GPU ray caster, or the tracer
+  PrimaryShading,  // the GPU's shader, or the tracer
   SecondaryRays,   // reflection, refraction and their shadow rays
   Blit,            // result into the window's framebuffer
   Count

@@ -5,7 +5,7 @@
 
 namespace hrt
 {
-namespace embree
+namespace bvh
 {
 
 namespace
@@ -92,5 +92,5 @@ void Device::remember(void* self, RTCError, const char* message)
   device.Message = message ? message : "";
 }
 
-} // namespace embree
+} // namespace bvh
 } // namespace hrt

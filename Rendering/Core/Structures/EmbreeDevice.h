@@ -9,7 +9,7 @@
 
 namespace hrt
 {
-namespace embree
+namespace bvh
 {
 
 class Device
@@ -39,5 +39,5 @@ private:
   std::string Message;
 };
 
-} // namespace embree
+} // namespace bvh
 } // namespace hrt

@@ -1,10 +1,10 @@
-// The exact kernel of Geometry/TriangleTest.h once more, for the hottest place: on triangles as
+// The exact kernel of Geometry/TriangleIntersection.h once more, for the hottest place: on triangles as
 // hierarchies keep them, alone or for eight pairs of a ray and a triangle at once. The same
 // operations in the same order, hence the same bits and the same proof; the tests compare the two
 // bit by bit. Like the kernel it is compiled with -ffp-contract=off: AVX-512 has fused operations.
 #pragma once
 
-#include "Rendering/Core/Geometry/TriangleTest.h"
+#include "Rendering/Core/Geometry/TriangleIntersection.h"
 #include "Rendering/Core/Structures/InstructionSet.h"
 
 namespace hrt

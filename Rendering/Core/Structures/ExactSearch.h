@@ -3,7 +3,7 @@
 // does not show.
 #pragma once
 
-#include "Rendering/Core/Geometry/TriangleTest.h"
+#include "Rendering/Core/Geometry/TriangleIntersection.h"
 #include "Rendering/Core/Structures/Structure.h"
 #include "Rendering/Core/Structures/TraversalRay.h"
 

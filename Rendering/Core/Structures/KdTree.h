@@ -1,7 +1,7 @@
 // The paper's acceleration structure: a kd-tree over the triangles of one geometry, in the
 // coordinates of its positions. Built by the O(N log N) surface area heuristic (KdTreeBuilder.cpp),
 // traversed without an epsilon (KdTreeTraversal.h) in a layout made for that (KdTreeCells.h). It proposes
-// triangles; which of them a ray meets is decided elsewhere, by Geometry/TriangleTest.h.
+// triangles; which of them a ray meets is decided elsewhere, by Geometry/TriangleIntersection.h.
 //
 // What the tree promises. Every point of a triangle lies in, or within `padding` of, the closed cell
 // of a leaf that lists the triangle, and of the bounds that the leaf has in KdTreeCells.h. A traversal that

@@ -1,5 +1,5 @@
 // The paper's ray structure: kd-trees by the surface area heuristic over the exact kernel. It is the
-// mode "as published" and the second oracle beside EmbreeStructure: nothing but the kernel and the tie
+// mode "as published" and the second oracle beside BvhStructure: nothing but the kernel and the tie
 // rule is common to both, and the answers are equal bit by bit.
 //
 // Two levels: one tree per Geometry, kept by its version and shared by all parts that show it, below one

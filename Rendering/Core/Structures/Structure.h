@@ -1,6 +1,6 @@
 // The interface of a ray acceleration structure. Rays and hits are in double precision and in world
 // coordinates relative to Snapshot::origin; whatever an implementation does inside, a hit's
-// (t, u, v) is that of the double-precision test of Geometry/TriangleTest.h.
+// (t, u, v) is that of the double-precision test of Geometry/TriangleIntersection.h.
 #pragma once
 
 #include "Rendering/Core/Geometry/Coincidence.h"

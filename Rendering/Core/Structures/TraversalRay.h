@@ -40,7 +40,7 @@ struct TraversalBox
   //   R e   that of p * r where the processor does not fuse,
   //   R e   that of the grown plane itself,
   //   R e   that of the corners, where they are merged into the coordinates of others,
-  //   R e   everything done in double, for near rays (EmbreeTopLevel.h).
+  //   R e   everything done in double, for near rays (BvhTopLevel.h).
   // The parameter is then off by the factors 1 + e of r and of the difference: beside a parameter
   // of at most 2 H, which is as far as the ray runs within the box, by 4 H e, and |r| >= 1.
   // Together 6 R e + 4 H e. The rest of 7 is for kSteepest. The floor keeps a box at the origin

@@ -3,7 +3,7 @@
 // kernel then says is the result. That is why the sieve may use any instruction set and fused
 // operations.
 //
-// The edge functions are those of Geometry/TriangleTest.h, rounded to float. Let R be the reach of
+// The edge functions are those of Geometry/TriangleIntersection.h, rounded to float. Let R be the reach of
 // the hierarchy's box (TraversalRay.h), e = 2^-24. Against the true ray and the true corners,
 //   a corner relative to the origin is off by 5 R e: the corner's own rounding R e, the origin's R
 //   e, R e for everything done in double (TraversalBox::padding, or what a larger R makes up for), and that of a

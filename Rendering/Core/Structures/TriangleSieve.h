@@ -1,6 +1,6 @@
 // The sieve of TriangleBlock.h for one ray, in plain C++ that compilers turn into vector instructions of
 // whatever set the caller is compiled for. The kd-tree's; Embree's hierarchies have theirs in
-// EmbreeKernels.inl, where rays too lie side by side.
+// BvhKernels.inl, where rays too lie side by side.
 #pragma once
 
 #include "Rendering/Core/Structures/InstructionSet.h"

@@ -7,7 +7,7 @@
 
 namespace hrt
 {
-namespace embree
+namespace bvh
 {
 
 static_assert(sizeof(WideNode) == 256, "nodes are read by whole cache lines");
@@ -264,5 +264,5 @@ double WideTree::cost() const
   return whole > 0.0 ? areas / whole : 1.0;
 }
 
-} // namespace embree
+} // namespace bvh
 } // namespace hrt

@@ -1,5 +1,5 @@
 // A tree of boxes, eight to a node, in single precision: one node is one step of eight lanes
-// (EmbreeKernels.inl). Embree's builder decides by the surface area heuristic what lies with what;
+// (BvhKernels.inl). Embree's builder decides by the surface area heuristic what lies with what;
 // the boxes are ours, grown by the bound of TraversalRay.h, and can be moved without building anew.
 //
 // Why not Embree's own traversal: a hierarchy over our triangles would be user geometry to it,
@@ -16,7 +16,7 @@
 
 namespace hrt
 {
-namespace embree
+namespace bvh
 {
 
 struct alignas(64) WideNode // four cache lines
@@ -90,5 +90,5 @@ private:
   std::uint32_t Root = kUnused;
 };
 
-} // namespace embree
+} // namespace bvh
 } // namespace hrt

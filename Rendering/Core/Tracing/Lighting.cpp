@@ -1,7 +1,7 @@
 // Implements lighting with shadow rays.
 #include "Rendering/Core/Tracing/Lighting.h"
 
-#include "Rendering/Core/Shading/Lighting.h"
+#include "Rendering/Core/Shading/ShadingLight.h"
 
 #include <algorithm>
 

@@ -4,7 +4,7 @@
 #pragma once
 
 #include "Rendering/Core/Geometry/Coincidence.h"
-#include "Rendering/Core/Geometry/TriangleTest.h"
+#include "Rendering/Core/Geometry/TriangleIntersection.h"
 #include "Rendering/Core/Shading/Shading.h"
 #include "Rendering/Core/Snapshot.h"
 #include "Rendering/Core/Structures/Structure.h"

@@ -1,7 +1,6 @@
-// The tracer's face to those who have all ids at hand.
+// The shadow of one light, asked for alone.
 #include "Rendering/Core/Tracing/Tracer.h"
 
-#include "Rendering/Core/Tracing/ImageTracer.h"
 #include "Rendering/Core/Tracing/TileTracer.h"
 
 #include <tbb/parallel_for.h>
@@ -10,18 +9,6 @@
 
 namespace hrt
 {
-
-SecondaryResult traceSecondary(const Snapshot& snapshot, const Structure& structure,
-  const TracerSettings& settings, const std::uint32_t* ids, SecondaryImage& image)
-{
-  return ImageTracer(snapshot, structure, settings, Wanted::SecondaryOnly, ids, image).finish();
-}
-
-SecondaryResult traceImage(const Snapshot& snapshot, const Structure& structure,
-  const TracerSettings& settings, const std::uint32_t* ids, SecondaryImage& image)
-{
-  return ImageTracer(snapshot, structure, settings, Wanted::Everything, ids, image).finish();
-}
 
 std::vector<float> castShadowRays(const Snapshot& snapshot, const Structure& structure,
   const TracerSettings& settings, const std::uint32_t* ids, std::size_t light)

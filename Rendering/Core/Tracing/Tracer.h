@@ -34,10 +34,9 @@ struct TracerSettings
   // interpolation. See Interleaving.h.
   bool interleaveErrorControl = true;
   // What is traced; the other pixels are as if nothing was hit. Multisampling and interleaving look
-  // at neighbours: near the bounds their result is that of the whole picture from dependsOn() pixels
-  // inwards.
+  // at neighbours: near the bounds their result is that of the whole picture from pixelsAround() of
+  // both inwards.
   PixelBounds bounds;
-  int dependsOn() const { return pixelsAround(this->multisampling, this->interleave); }
 };
 
 // Rays by class, for the statistics: how many were asked for and how many had to be traced;
@@ -160,18 +159,6 @@ struct SecondaryResult
     return *this;
   }
 };
-
-// Traces reflection and refraction for every pixel whose triangle belongs to a mirror or to glass.
-// `ids`: width x height triangle numbers plus one, as in the object intersection buffer (0: no
-// hit); ids out of range are treated as no hit and counted in `invalidIds`. A material that is both
-// mirror and glass is glass. The result does not depend on the number of threads.
-SecondaryResult traceSecondary(const Snapshot& snapshot, const Structure& structure,
-  const TracerSettings& settings, const std::uint32_t* ids, SecondaryImage& image);
-
-// The whole picture: the colour of every pixel with a valid id (a = 1), its shadows, mirrors and
-// glass; (0, 0, 0, 0) elsewhere. Otherwise as traceSecondary.
-SecondaryResult traceImage(const Snapshot& snapshot, const Structure& structure,
-  const TracerSettings& settings, const std::uint32_t* ids, SecondaryImage& image);
 
 // The visible share of one light at every pixel with a valid id, 1 lit to 0 in shadow, NaN elsewhere;
 // by shadow rays or from the settings' shadow maps. With tinted shadows the mean over the colours.

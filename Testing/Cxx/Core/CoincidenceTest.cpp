@@ -1,6 +1,6 @@
 // The rule for surfaces in one place: what rounding alone can have parted, and nothing that it cannot.
 #include "Rendering/Core/Geometry/Coincidence.h"
-#include "Rendering/Core/Structures/EmbreeStructure.h"
+#include "Rendering/Core/Structures/BvhStructure.h"
 #include "Rendering/Core/Structures/KdTreeStructure.h"
 #include "Rendering/Core/Tracing/Meeting.h"
 #include "Scenes.h"
@@ -150,7 +150,7 @@ TEST(Coincidence, LeavingRaysPassOverTwinsAndOverNothingElse)
     {
       SCOPED_TRACE(apart);
       const Snapshot s = twoSquares(height, apart * bound);
-      EmbreeStructure embree;
+      BvhStructure embree;
       KdTreeStructure tree;
       for (Structure* structure : { static_cast<Structure*>(&embree), static_cast<Structure*>(&tree) })
       {
@@ -186,7 +186,7 @@ TEST(Meetings, ARayInGlassLeavesBeforeItMeetsTheFloor)
   {
     s.parts[i].source.prop = static_cast<std::uint32_t>(i);
   }
-  EmbreeStructure structure;
+  BvhStructure structure;
   structure.update(s);
   const Surfaces surfaces(s);
   const Meetings meetings(s, surfaces, structure, true);
@@ -219,7 +219,7 @@ TEST(Meetings, TrianglesOfOneFaceAreOneSurfaceOnTheirEdge)
 {
   Snapshot s;
   scenes::addPart(s, square(0.0f)).material = scenes::glass(1.5f);
-  EmbreeStructure structure;
+  BvhStructure structure;
   structure.update(s);
   const Surfaces surfaces(s);
   const Meetings meetings(s, surfaces, structure, true);
@@ -246,7 +246,7 @@ TEST(Meetings, WhatIsFartherBehindIsNoMember)
     Snapshot s = twoSquares(1.0, apart * bound);
     for (const auto& make : { 0, 1 })
     {
-      EmbreeStructure embree;
+      BvhStructure embree;
       KdTreeStructure tree;
       Structure& structure = make ? static_cast<Structure&>(embree) : tree;
       structure.update(s);

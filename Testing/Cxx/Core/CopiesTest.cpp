@@ -1,7 +1,7 @@
 // A part with copies is what as many parts are: to every structure, and to the surface at a hit.
 #include "Scenes.h"
 
-#include "Rendering/Core/Structures/EmbreeStructure.h"
+#include "Rendering/Core/Structures/BvhStructure.h"
 #include "Rendering/Core/Structures/KdTreeStructure.h"
 #include "Rendering/Core/Tracing/Surface.h"
 
@@ -84,7 +84,7 @@ template <class AStructure>
 class CopiesIn : public ::testing::Test
 {
 };
-using Structures = ::testing::Types<EmbreeStructure, KdTreeStructure>;
+using Structures = ::testing::Types<BvhStructure, KdTreeStructure>;
 TYPED_TEST_SUITE(CopiesIn, Structures);
 
 TYPED_TEST(CopiesIn, AreWhatAsManyPartsAre)
@@ -155,7 +155,7 @@ TEST(Copies, HaveTheSurfaceOfTheirOwn)
 {
   const Twins twins(30);
   const Surfaces a(twins.copied), b(twins.expanded);
-  EmbreeStructure structure;
+  BvhStructure structure;
   structure.update(twins.copied);
   int met = 0;
   for (const Ray& ray : randomRays(2048))

@@ -24,7 +24,6 @@ struct Frame
 
   Frame()
   {
-    facts.triangles = 100;
     facts.anyPartInView = facts.mirrorInView = facts.anyCaster = true;
     facts.partInView = { true, false };
     facts.lightCanCast = { true, true };
@@ -325,7 +324,7 @@ Frame animatedFrame(PrimaryShading shading)
   Frame frame;
   frame.settings.pipelined = true;
   frame.settings.primaryShading = shading;
-  frame.facts.circumstances.animation = true;
+  frame.facts.conditions.animation = true;
   frame.changes.camera = true;
   frame.caches.previousPicture = true;
   return frame;
@@ -385,11 +384,11 @@ TEST(FramePlan, WhatForbidsPipelining)
     [](Frame& f) { f.settings.pipelined = false; },
     [](Frame& f) { f.settings.visibility = Visibility::RayCasting; },
     [](Frame& f) { f.facts.mirrorInView = false; },
-    [](Frame& f) { f.facts.circumstances.animation = false; },
-    [](Frame& f) { f.facts.circumstances.stereo = true; },
-    [](Frame& f) { f.facts.circumstances.othersDraw = true; },
-    [](Frame& f) { f.facts.circumstances.sharedCamera = true; },
-    [](Frame& f) { f.facts.circumstances.buffersWanted = true; },
+    [](Frame& f) { f.facts.conditions.animation = false; },
+    [](Frame& f) { f.facts.conditions.stereo = true; },
+    [](Frame& f) { f.facts.conditions.othersDraw = true; },
+    [](Frame& f) { f.facts.conditions.sharedCamera = true; },
+    [](Frame& f) { f.facts.conditions.buffersWanted = true; },
     [](Frame& f) { f.changes.geometry = true; },
     [](Frame& f) { f.changes.first = true; },
     [](Frame& f) { f.caches.previousPicture = false; },

@@ -1,6 +1,6 @@
 // The picture's second passes and the order of its work: whatever arrives first and whoever traces it,
 // the picture is one.
-#include "Rendering/Core/Structures/EmbreeStructure.h"
+#include "Rendering/Core/Structures/BvhStructure.h"
 #include "Rendering/Core/Tracing/ImageTracer.h"
 #include "Scenes.h"
 
@@ -36,7 +36,7 @@ void expectSameCounts(const RayCount& a, const RayCount& b)
 struct Balls
 {
   Snapshot scene;
-  EmbreeStructure structure;
+  BvhStructure structure;
   PrimaryHits hits;
 
   Balls(int width, int height)
@@ -230,7 +230,7 @@ TEST(ImageTracer, LooksNoFartherThanItSays)
         balls.trace(settings, wanted, whole, height);
         for (const PixelBounds& b : tiles)
         {
-          settings.bounds = b.grownBy(settings.dependsOn());
+          settings.bounds = b.grownBy(pixelsAround(settings.multisampling, settings.interleave));
           const PixelBounds known = settings.bounds.within(width, height);
           for (int pixel = 0; pixel < width * height; ++pixel)
           {

@@ -1,8 +1,8 @@
 // Interleaved rendering against pictures whose every pixel was traced.
-#include "Rendering/Core/Structures/EmbreeStructure.h"
+#include "Rendering/Core/Structures/BvhStructure.h"
 #include "Rendering/Core/Tracing/Interleaving.h"
-#include "Rendering/Core/Tracing/Tracer.h"
 #include "Scenes.h"
+#include "Testing/Cxx/TracedImages.h"
 
 #include <gtest/gtest.h>
 
@@ -101,7 +101,7 @@ struct Picture
 Picture trace(const Snapshot& s, const TracerSettings& settings,
   Wanted wanted = Wanted::Everything, bool interleavePrimary = false)
 {
-  EmbreeStructure structure;
+  BvhStructure structure;
   structure.update(s);
   Picture p;
   p.primary = castPrimaryRays(

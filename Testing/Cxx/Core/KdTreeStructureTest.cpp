@@ -1,7 +1,7 @@
 // The kd-tree structure against a loop over all triangles and against Embree: same triangle, same t, u,
 // v, bit by bit, whatever the mesh, the placement and the ray.
 #include "KdTreeScenes.h"
-#include "Rendering/Core/Structures/EmbreeStructure.h"
+#include "Rendering/Core/Structures/BvhStructure.h"
 #include "Rendering/Core/Structures/KdTreeSearch.h"
 #include "Rendering/Core/Structures/KdTreeStructure.h"
 
@@ -103,7 +103,7 @@ TEST(KdTreeStructure, EqualsBruteForceFarFromTheOrigin)
 void expectEqualToEmbree(const Snapshot& s, int rays)
 {
   KdTreeStructure tree;
-  EmbreeStructure embree;
+  BvhStructure embree;
   tree.update(s);
   embree.update(s);
   const Compared result = compare(tree, embree, s, rays);

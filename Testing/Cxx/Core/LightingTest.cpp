@@ -1,5 +1,5 @@
 // Shadow rays: where their segments end, and which of them need not be traced.
-#include "Rendering/Core/Structures/EmbreeStructure.h"
+#include "Rendering/Core/Structures/BvhStructure.h"
 #include "Rendering/Core/Tracing/Lighting.h"
 #include "Scenes.h"
 
@@ -14,7 +14,7 @@ using namespace hrt;
 struct Floor
 {
   Snapshot scene;
-  EmbreeStructure structure;
+  BvhStructure structure;
   TracerSettings settings;
   RayCount rays;
 

@@ -1,7 +1,7 @@
 // Wrong numbers planted in an item buffer, and what each mode of multisampling makes of them.
-#include "Rendering/Core/Structures/EmbreeStructure.h"
-#include "Rendering/Core/Tracing/Tracer.h"
+#include "Rendering/Core/Structures/BvhStructure.h"
 #include "Scenes.h"
+#include "Testing/Cxx/TracedImages.h"
 
 #include <gtest/gtest.h>
 
@@ -18,7 +18,7 @@ constexpr int kSize = 48; // pixels along a side
 struct Halves
 {
   Snapshot scene;
-  EmbreeStructure structure;
+  BvhStructure structure;
   std::vector<std::uint32_t> ids; // the right ones
   static constexpr std::uint32_t kAway = 5;
 

@@ -1,7 +1,7 @@
 // Small scenes and a brute-force structure for the core's tests.
 #pragma once
 
-#include "Rendering/Core/Geometry/TriangleTest.h"
+#include "Rendering/Core/Geometry/TriangleIntersection.h"
 #include "Rendering/Core/Snapshot.h"
 #include "Rendering/Core/Structures/Structure.h"
 #include "Testing/Cxx/Meshes.h"

@@ -1,6 +1,6 @@
 // What every ray structure promises (Structure.h), tried on each of them: ties, who takes part, and what
 // is a miss.
-#include "Rendering/Core/Structures/EmbreeStructure.h"
+#include "Rendering/Core/Structures/BvhStructure.h"
 #include "Rendering/Core/Structures/KdTreeStructure.h"
 #include "StructureChecks.h"
 
@@ -22,7 +22,7 @@ template <class Structure>
 class StructureRules : public testing::Test
 {
 };
-using Structures = testing::Types<EmbreeStructure, KdTreeStructure>;
+using Structures = testing::Types<BvhStructure, KdTreeStructure>;
 TYPED_TEST_SUITE(StructureRules, Structures);
 
 TYPED_TEST(StructureRules, EqualHitsGiveTheLargestNumber)

@@ -1,5 +1,5 @@
 // Surface points: sides, normals and colours as VTK's mapper has them, and rays that leave them.
-#include "Rendering/Core/Structures/EmbreeStructure.h"
+#include "Rendering/Core/Structures/BvhStructure.h"
 #include "Rendering/Core/Tracing/Surface.h"
 #include "Scenes.h"
 
@@ -223,7 +223,7 @@ TEST(Surface, LeavingRaysDoNotMeetTheirOwnPlane)
     scenes::addPart(s, floorQuad(),
       glm::translate(glm::dmat4(1.0), random.inBox(10)) *
         glm::rotate(glm::dmat4(1.0), random(0, 6), random.direction()));
-    EmbreeStructure structure;
+    BvhStructure structure;
     structure.update(s);
     for (int j = 0; j < 200; ++j)
     {

@@ -1,8 +1,8 @@
 // The Whitted tracer against optics that can be solved on paper.
-#include "Rendering/Core/Structures/EmbreeStructure.h"
+#include "Rendering/Core/Structures/BvhStructure.h"
 #include "Rendering/Core/Tracing/Fresnel.h"
-#include "Rendering/Core/Tracing/Tracer.h"
 #include "Scenes.h"
+#include "Testing/Cxx/TracedImages.h"
 
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
@@ -52,7 +52,7 @@ struct Picture
 
   Picture(const Snapshot& s, const TracerSettings& settings)
   {
-    EmbreeStructure structure;
+    BvhStructure structure;
     structure.update(s);
     ids = visibleIds(s, structure);
     result = traceSecondary(s, structure, settings, ids.data(), image);
@@ -413,7 +413,7 @@ TEST(Tracer, IdsOutOfRangeAreCountedAndIgnored)
   Snapshot s;
   scenes::addPart(s, square(2)).material = scenes::mirror(1.0f);
   s.camera = scenes::perspective({ 0, 0, 5 }, { 0, 0, 0 }, 2, 2, 10.0);
-  EmbreeStructure structure;
+  BvhStructure structure;
   structure.update(s);
   const std::uint32_t ids[] = { 0, 3, 0xffffffffu, 2 };
   SecondaryImage image;

@@ -1,9 +1,10 @@
 // The reference renderer held against closed forms, and the product's tracer against the reference.
 #include "Testing/Cxx/Reference/ReferenceRenderer.h"
 
-#include "Rendering/Core/Structures/EmbreeStructure.h"
+#include "Rendering/Core/Structures/BvhStructure.h"
 #include "Testing/Cxx/Core/Scenes.h"
 #include "Testing/Cxx/Reference/TriangleSoup.h"
+#include "Testing/Cxx/TracedImages.h"
 
 #include <gtest/gtest.h>
 
@@ -182,7 +183,7 @@ TEST(ReferenceRenderer, TheTracerShowsTheReference)
       settings.tintedShadows = tinted;
       settings.maximumDepth = depth;
       const Picture truth = reference::render(s, settings);
-      EmbreeStructure structure;
+      BvhStructure structure;
       structure.update(s);
       PrimaryHits hits;
       castPrimaryRays(s, structure, {}, hits);

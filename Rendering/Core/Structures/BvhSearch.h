@@ -11,7 +11,7 @@
 
 namespace hrt
 {
-namespace embree
+namespace bvh
 {
 
 // A part as its hierarchy sees it; renewed with every update.
@@ -47,5 +47,5 @@ struct Search
   }
 };
 
-} // namespace embree
+} // namespace bvh
 } // namespace hrt

@@ -22,10 +22,10 @@ namespace hrt
 namespace gl
 {
 
-class RayCaster
+class PrimaryShader
 {
 public:
-  explicit RayCaster(ObjectPool& pool);
+  explicit PrimaryShader(ObjectPool& pool);
 
   // Everything the shader reads.
   struct Inputs

@@ -16,13 +16,19 @@ using scenes::Random;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 const Corners kTriangle{ { 0, 0, 0 }, { 1, 0, 0 }, { 0, 1, 0 } };
 
+bool triangleHit(const glm::dvec3& origin, const glm::dvec3& direction, const Corners& corners,
+  double tMaximum, TriangleHit& hit)
+{
+  return ShearedRay(origin, direction).hitsTriangle(corners, tMaximum, hit);
+}
+
 bool hits(glm::dvec3 origin, glm::dvec3 direction, double tMaximum = kInfinity)
 {
   TriangleHit hit;
   return triangleHit(origin, direction, kTriangle, tMaximum, hit);
 }
 
-TEST(TriangleTest, ReportsWhereItHits)
+TEST(TriangleIntersection, ReportsWhereItHits)
 {
   // All numbers are exact in binary, and so are their products: no tolerance.
   TriangleHit hit;
@@ -32,13 +38,13 @@ TEST(TriangleTest, ReportsWhereItHits)
   EXPECT_EQ(hit.v, 0.5);
 }
 
-TEST(TriangleTest, BothSidesCount)
+TEST(TriangleIntersection, BothSidesCount)
 {
   EXPECT_TRUE(hits({ 0.25, 0.25, 1 }, { 0, 0, -1 }));
   EXPECT_TRUE(hits({ 0.25, 0.25, -1 }, { 0, 0, 1 }));
 }
 
-TEST(TriangleTest, EdgesAndVerticesCount)
+TEST(TriangleIntersection, EdgesAndVerticesCount)
 {
   for (const glm::dvec2& p : { glm::dvec2(0, 0), glm::dvec2(1, 0), glm::dvec2(0, 1),
          glm::dvec2(0.5, 0), glm::dvec2(0, 0.5), glm::dvec2(0.5, 0.5) })
@@ -51,7 +57,7 @@ TEST(TriangleTest, EdgesAndVerticesCount)
   EXPECT_FALSE(hits({ 0.5, 0.5 + outside, 1 }, { 0, 0, -1 }));
 }
 
-TEST(TriangleTest, RespectsTheRange)
+TEST(TriangleIntersection, RespectsTheRange)
 {
   const glm::dvec3 above(0.25, 0.25, 1), down(0, 0, -1);
   EXPECT_FALSE(hits(above, -down));
@@ -60,14 +66,14 @@ TEST(TriangleTest, RespectsTheRange)
   EXPECT_FALSE(hits({ 0.25, 0.25, 0 }, down)); // t == 0
 }
 
-TEST(TriangleTest, EdgeOnIsAMiss)
+TEST(TriangleIntersection, EdgeOnIsAMiss)
 {
   TriangleHit hit;
   EXPECT_FALSE(hits({ -1, 0.25, 0 }, { 1, 0, 0 }));
   EXPECT_FALSE(planeHit({ -1, 0.25, 1 }, { 1, 0, 0 }, kTriangle, hit));
 }
 
-TEST(TriangleTest, GrazingRaysHitWhereTheyShould)
+TEST(TriangleIntersection, GrazingRaysHitWhereTheyShould)
 {
   // Slope 2^-20: the ray meets the plane 2^20 heights away, at an exactly representable point.
   TriangleHit hit;
@@ -78,7 +84,7 @@ TEST(TriangleTest, GrazingRaysHitWhereTheyShould)
   EXPECT_EQ(hit.v, 0.25);
 }
 
-TEST(TriangleTest, UnusableRaysAndTrianglesAreMisses)
+TEST(TriangleIntersection, UnusableRaysAndTrianglesAreMisses)
 {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   const glm::dvec3 above(0.25, 0.25, 1), down(0, 0, -1);
@@ -103,7 +109,7 @@ TEST(TriangleTest, UnusableRaysAndTrianglesAreMisses)
   EXPECT_TRUE(hits(above, { 0, 0, -std::numeric_limits<double>::min() })); // short is not zero
 }
 
-TEST(TriangleTest, PlaneHitAgreesBitByBit)
+TEST(TriangleIntersection, PlaneHitAgreesBitByBit)
 {
   Random random(1);
   int found = 0;
@@ -124,7 +130,7 @@ TEST(TriangleTest, PlaneHitAgreesBitByBit)
 
 // A fan of triangles around a vertex, its rim a polygon around the ray's target. Every ray aimed
 // at the middle, at a spoke or anywhere inside must hit at least one of them.
-TEST(TriangleTest, NothingSlipsThroughAFan)
+TEST(TriangleIntersection, NothingSlipsThroughAFan)
 {
   Random random(2);
   int leaks = 0, aimed = 0;
@@ -162,7 +168,7 @@ TEST(TriangleTest, NothingSlipsThroughAFan)
 // Edges that pass the ray within less than the rounding of their corners, on either side. The ray
 // is the z axis, so that no shear blurs the aim. A kernel that fuses one of an edge function's two
 // products loses many of these rays between the neighbours; this one must lose none.
-TEST(TriangleTest, NothingSlipsThroughAnEdge)
+TEST(TriangleIntersection, NothingSlipsThroughAnEdge)
 {
   Random random(10);
   int leaks = 0;
@@ -182,7 +188,7 @@ TEST(TriangleTest, NothingSlipsThroughAnEdge)
 // Triangles of a few steps of their coordinates, a million million of their own sizes away from the
 // ray: their edge functions are what rounding has left of differences of equals, and for some the
 // signs agree.
-TEST(TriangleTest, NothingFarFromATinyTriangleIsAHit)
+TEST(TriangleIntersection, NothingFarFromATinyTriangleIsAHit)
 {
   Random random(12);
   int phantoms = 0;
@@ -201,7 +207,7 @@ TEST(TriangleTest, NothingFarFromATinyTriangleIsAHit)
 // Corners and rays on a lattice so fine that every number and product is exact: the kernel must say
 // just what whole numbers say, on edges, at corners and on the border of the triangle's box too, many
 // of which coincide here.
-TEST(TriangleTest, OnALatticeItEqualsWholeNumbers)
+TEST(TriangleIntersection, OnALatticeItEqualsWholeNumbers)
 {
   Random random(13);
   const double step = 0x1p-52;
@@ -237,7 +243,7 @@ TEST(TriangleTest, OnALatticeItEqualsWholeNumbers)
 
 // Needles across the ray, their two near corners a few roundings apart: what is hit must be where u and
 // v say, up to roundings of the needle's length, and not at some corner far from the ray.
-TEST(TriangleTest, NeedlesAreHitWhereTheRayIs)
+TEST(TriangleIntersection, NeedlesAreHitWhereTheRayIs)
 {
   Random random(14);
   const ShearedRay axis({ 0, 0, 1 }, { 0, 0, -1 });
@@ -268,7 +274,7 @@ TEST(TriangleTest, NeedlesAreHitWhereTheRayIs)
 // Rays through a known point of a triangle. Sheared corners are off by a few roundings of the
 // largest distance M, edge functions by a few of M * M, and the quotients by that over the
 // determinant: 32 roundings are counted for all of it.
-TEST(TriangleTest, HitsAreExactWithinTheirBound)
+TEST(TriangleIntersection, HitsAreExactWithinTheirBound)
 {
   Random random(3);
   double worst = 0.0;

@@ -1,6 +1,6 @@
 // Eight floats as one value: a register of AVX2, or two of any vector unit that the compiler knows.
 // And what a packet's rays are taken in, RayFloats: the same, or the sixteen of an AVX-512
-// register. Included once for each instruction set (EmbreeKernels.cpp).
+// register. Included once for each instruction set (BvhKernels.cpp).
 
 #define HRT_LANES HRT_TARGET inline __attribute__((always_inline))
 
@@ -11,7 +11,7 @@ struct Floats
   static constexpr unsigned int kLanes = 8;
   __m256 v;
 
-  HRT_LANES static Floats all(float a) { return { _mm256_set1_ps(a) }; }
+  HRT_LANES static Floats broadcast(float a) { return { _mm256_set1_ps(a) }; }
 };
 HRT_LANES Floats load(const float* p)
 {
@@ -46,11 +46,11 @@ HRT_LANES Floats mulAdd(Floats a, Floats b, Floats c)
 {
   return { _mm256_fmadd_ps(a.v, b.v, c.v) };
 }
-HRT_LANES Floats least(Floats a, Floats b)
+HRT_LANES Floats min(Floats a, Floats b)
 {
   return { _mm256_min_ps(a.v, b.v) };
 }
-HRT_LANES Floats most(Floats a, Floats b)
+HRT_LANES Floats max(Floats a, Floats b)
 {
   return { _mm256_max_ps(a.v, b.v) };
 }
@@ -89,7 +89,7 @@ HRT_LANES Floats where(unsigned int bits, Floats a, Floats b)
   return { _mm256_blendv_ps(b.v, a.v, _mm256_castsi256_ps(chosen)) };
 }
 // The smallest lane.
-HRT_LANES float leastLane(Floats a)
+HRT_LANES float minLane(Floats a)
 {
   __m128 half = _mm_min_ps(_mm256_castps256_ps128(a.v), _mm256_extractf128_ps(a.v, 1));
   half = _mm_min_ps(half, _mm_movehl_ps(half, half));
@@ -105,7 +105,7 @@ struct Floats
   static constexpr unsigned int kLanes = 8;
   Quad v[2];
 
-  HRT_LANES static Floats all(float a)
+  HRT_LANES static Floats broadcast(float a)
   {
     const Quad quad = { a, a, a, a };
     return { { quad, quad } };
@@ -146,25 +146,25 @@ HRT_LANES Floats mulAdd(Floats a, Floats b, Floats c)
 {
   return a * b + c;
 }
-HRT_LANES Quad least(Quad a, Quad b)
+HRT_LANES Quad min(Quad a, Quad b)
 {
   return a < b ? a : b;
 }
-HRT_LANES Quad most(Quad a, Quad b)
+HRT_LANES Quad max(Quad a, Quad b)
 {
   return a > b ? a : b;
 }
-HRT_LANES Floats least(Floats a, Floats b)
+HRT_LANES Floats min(Floats a, Floats b)
 {
-  return { { least(a.v[0], b.v[0]), least(a.v[1], b.v[1]) } };
+  return { { min(a.v[0], b.v[0]), min(a.v[1], b.v[1]) } };
 }
-HRT_LANES Floats most(Floats a, Floats b)
+HRT_LANES Floats max(Floats a, Floats b)
 {
-  return { { most(a.v[0], b.v[0]), most(a.v[1], b.v[1]) } };
+  return { { max(a.v[0], b.v[0]), max(a.v[1], b.v[1]) } };
 }
 HRT_LANES Floats size(Floats a)
 {
-  return most(a, Floats::all(0.0f) - a);
+  return max(a, Floats::broadcast(0.0f) - a);
 }
 HRT_LANES unsigned int bits(QuadMask a, QuadMask b)
 {
@@ -207,9 +207,9 @@ HRT_LANES Floats where(unsigned int chosen, Floats a, Floats b)
     (every & (ones << 4)) != 0 ? a.v[1] : b.v[1] } };
 }
 // The smallest lane.
-HRT_LANES float leastLane(Floats a)
+HRT_LANES float minLane(Floats a)
 {
-  const Quad four = least(a.v[0], a.v[1]);
+  const Quad four = min(a.v[0], a.v[1]);
   return std::min(std::min(four[0], four[1]), std::min(four[2], four[3]));
 }
 
@@ -222,7 +222,7 @@ struct RayFloats
   static constexpr unsigned int kLanes = 16;
   __m512 v;
 
-  HRT_LANES static RayFloats all(float a) { return { _mm512_set1_ps(a) }; }
+  HRT_LANES static RayFloats broadcast(float a) { return { _mm512_set1_ps(a) }; }
 };
 HRT_LANES RayFloats loadRays(const float* p)
 {
@@ -257,11 +257,11 @@ HRT_LANES RayFloats mulAdd(RayFloats a, RayFloats b, RayFloats c)
   return { _mm512_fmadd_ps(a.v, b.v, c.v) };
 }
 // GCC 12 warns of the unmasked ones that their own header leaves something uninitialised.
-HRT_LANES RayFloats least(RayFloats a, RayFloats b)
+HRT_LANES RayFloats min(RayFloats a, RayFloats b)
 {
   return { _mm512_maskz_min_ps(0xffff, a.v, b.v) };
 }
-HRT_LANES RayFloats most(RayFloats a, RayFloats b)
+HRT_LANES RayFloats max(RayFloats a, RayFloats b)
 {
   return { _mm512_maskz_max_ps(0xffff, a.v, b.v) };
 }
@@ -281,9 +281,9 @@ HRT_LANES RayFloats where(unsigned int bits, RayFloats a, RayFloats b)
 {
   return { _mm512_mask_blend_ps(static_cast<__mmask16>(bits), b.v, a.v) };
 }
-HRT_LANES float leastLane(RayFloats a)
+HRT_LANES float minLane(RayFloats a)
 {
-  return leastLane(least(Floats{ _mm512_maskz_extractf32x8_ps(0xff, a.v, 0) },
+  return minLane(min(Floats{ _mm512_maskz_extractf32x8_ps(0xff, a.v, 0) },
     Floats{ _mm512_maskz_extractf32x8_ps(0xff, a.v, 1) }));
 }
 
@@ -295,18 +295,18 @@ HRT_LANES RayFloats loadRays(const float* p)
 }
 #endif
 
-HRT_LANES Floats all(float a)
+HRT_LANES Floats broadcast(float a)
 {
-  return Floats::all(a);
+  return Floats::broadcast(a);
 }
-HRT_LANES RayFloats allRays(float a)
+HRT_LANES RayFloats broadcastRays(float a)
 {
-  return RayFloats::all(a);
+  return RayFloats::broadcast(a);
 }
 
-HRT_LANES float mostLane(RayFloats a)
+HRT_LANES float maxLane(RayFloats a)
 {
-  return -leastLane(allRays(0.0f) - a);
+  return -minLane(broadcastRays(0.0f) - a);
 }
 
 // The numbers of the bits, in order. Up to kPacket of them are written whatever their count.

@@ -1,5 +1,5 @@
 // The hull of a packet's rays, which goes down the tree in place of them. Included by
-// EmbreePackets.inl.
+// BvhPackets.inl.
 
 // The hull of a packet's rays: two lines in x and two in y over the depth z, the axis along which
 // all their directions are 1 or all are -1. A line joins the least (or most) x of any ray where the
@@ -36,14 +36,14 @@ struct Frustum
     this->forward = entry.direction[axes.z].of[one];
     this->nearSide = this->forward > 0.0f ? 0 : 1;
     this->keep(entry.active);
-    RayFloats nearest = allRays(std::numeric_limits<float>::infinity());
+    RayFloats nearest = broadcastRays(std::numeric_limits<float>::infinity());
     unsigned int back = 0;
     for (unsigned int first = 0; first < kPacket; first += RayFloats::kLanes)
     {
-      const RayFloats way = loadRays(entry.direction[axes.z].of + first) * allRays(this->forward);
-      back |= less(way, allRays(1.0f)) << first;
-      nearest = least(nearest,
-        mulAdd(loadRays(entry.origin[axes.z].of + first), allRays(this->forward),
+      const RayFloats way = loadRays(entry.direction[axes.z].of + first) * broadcastRays(this->forward);
+      back |= less(way, broadcastRays(1.0f)) << first;
+      nearest = min(nearest,
+        mulAdd(loadRays(entry.origin[axes.z].of + first), broadcastRays(this->forward),
           loadRays(this->apart.of + first)));
     }
     if ((back & entry.active) != 0)
@@ -51,7 +51,7 @@ struct Frustum
       return false;
     }
     this->slack = static_cast<float>(4.0 * box.padding());
-    this->begin = leastLane(nearest);
+    this->begin = minLane(nearest);
     const double last = this->forward > 0.0f ? box.upper[axes.z] : -box.lower[axes.z];
     const float depth = std::max(static_cast<float>(last) - this->begin, 0.0f);
     this->fit(entry, axes.x, 0, depth);
@@ -71,17 +71,17 @@ struct Frustum
   // Where the last of the rays ends, from the beginning.
   HRT_LANES float end(const PacketEntry& entry) const
   {
-    RayFloats last = allRays(-1.0f);
+    RayFloats last = broadcastRays(-1.0f);
     for (unsigned int first = 0; first < kPacket; first += RayFloats::kLanes)
     {
       const RayFloats start = mulSub(
-        loadRays(entry.origin[this->z].of + first), allRays(this->forward), allRays(this->begin));
+        loadRays(entry.origin[this->z].of + first), broadcastRays(this->forward), broadcastRays(this->begin));
       // An end may be infinite, and infinity less infinity no number.
       const RayFloats end =
-        least(start + loadRays(entry.end.of + first), allRays(std::numeric_limits<float>::max()));
-      last = most(last, end - loadRays(this->apart.of + first));
+        min(start + loadRays(entry.end.of + first), broadcastRays(std::numeric_limits<float>::max()));
+      last = max(last, end - loadRays(this->apart.of + first));
     }
-    return mostLane(last) + this->slack;
+    return maxLane(last) + this->slack;
   }
 
   struct Met
@@ -104,22 +104,22 @@ struct Frustum
     Floats gap[2], spread[2];
     for (int i = 0; i < 2; ++i)
     {
-      const Floats slope0 = all(this->slope[0][i]), offset0 = all(this->offset[0][i]);
-      const Floats slope1 = all(this->slope[1][i]), offset1 = all(this->offset[1][i]);
-      const Floats below = least(mulAdd(slope0, nearZ, offset0), mulAdd(slope0, farZ, offset0));
-      const Floats above = most(mulAdd(slope1, nearZ, offset1), mulAdd(slope1, farZ, offset1));
+      const Floats slope0 = broadcast(this->slope[0][i]), offset0 = broadcast(this->offset[0][i]);
+      const Floats slope1 = broadcast(this->slope[1][i]), offset1 = broadcast(this->offset[1][i]);
+      const Floats below = min(mulAdd(slope0, nearZ, offset0), mulAdd(slope0, farZ, offset0));
+      const Floats above = max(mulAdd(slope1, nearZ, offset1), mulAdd(slope1, farZ, offset1));
       const Floats over = bound(1, axes[i]) - below, under = above - bound(0, axes[i]);
-      gap[i] = least(over, under);
-      spread[i] = most(over, under);
+      gap[i] = min(over, under);
+      spread[i] = max(over, under);
     }
-    const Floats forwards = all(this->forward), from = all(this->begin);
+    const Floats forwards = broadcast(this->forward), from = broadcast(this->begin);
     const Floats nearer = mulSub(nearZ, forwards, from), farther = mulSub(farZ, forwards, from);
     Met met;
-    met.start = most(nearer, all(0.0f));
-    met.spread = mulAdd(all(4.0f), met.start - nearer, spread[0] + spread[1]);
+    met.start = max(nearer, broadcast(0.0f));
+    met.spread = mulAdd(broadcast(4.0f), met.start - nearer, spread[0] + spread[1]);
     // The depths decide last: they are numbers even for an unused child.
-    const Floats along = least(end - nearer, farther + all(this->slack));
-    met.boxes = lessEqual(all(0.0f), least(least(gap[0], gap[1]), along));
+    const Floats along = min(end - nearer, farther + broadcast(this->slack));
+    met.boxes = lessEqual(broadcast(0.0f), min(min(gap[0], gap[1]), along));
     return met;
   }
 
@@ -135,23 +135,23 @@ private:
   HRT_LANES void fit(const PacketEntry& entry, int axis, int which, float depth)
   {
     RayFloats lower[2], upper[2];
-    lower[0] = lower[1] = allRays(std::numeric_limits<float>::infinity());
-    upper[0] = upper[1] = allRays(-std::numeric_limits<float>::infinity());
+    lower[0] = lower[1] = broadcastRays(std::numeric_limits<float>::infinity());
+    upper[0] = upper[1] = broadcastRays(-std::numeric_limits<float>::infinity());
     for (unsigned int first = 0; first < kPacket; first += RayFloats::kLanes)
     {
       const RayFloats shear = loadRays(entry.direction[axis].of + first);
       const RayFloats out = loadRays(this->apart.of + first);
       const RayFloats after = mulSub(
-        loadRays(entry.origin[this->z].of + first), allRays(this->forward), allRays(this->begin));
+        loadRays(entry.origin[this->z].of + first), broadcastRays(this->forward), broadcastRays(this->begin));
       const RayFloats at0 = subMul(loadRays(entry.origin[axis].of + first), shear, after);
-      const RayFloats at1 = mulAdd(shear, allRays(depth), at0);
-      lower[0] = least(lower[0], at0 + out);
-      lower[1] = least(lower[1], at1 + out);
-      upper[0] = most(upper[0], at0 - out);
-      upper[1] = most(upper[1], at1 - out);
+      const RayFloats at1 = mulAdd(shear, broadcastRays(depth), at0);
+      lower[0] = min(lower[0], at0 + out);
+      lower[1] = min(lower[1], at1 + out);
+      upper[0] = max(upper[0], at0 - out);
+      upper[1] = max(upper[1], at1 - out);
     }
-    const float l0 = leastLane(lower[0]), l1 = leastLane(lower[1]);
-    const float u0 = mostLane(upper[0]), u1 = mostLane(upper[1]);
+    const float l0 = minLane(lower[0]), l1 = minLane(lower[1]);
+    const float u0 = maxLane(upper[0]), u1 = maxLane(upper[1]);
     this->width = std::max(this->width, std::max(u0 - l0, u1 - l1));
     this->line(0, which, l0 - this->slack, l1 - this->slack, depth);
     this->line(1, which, u0 + this->slack, u1 + this->slack, depth);

@@ -1,12 +1,12 @@
 // The ways of rays through both levels, for each instruction set that they are compiled for.
 #pragma once
 
-#include "Rendering/Core/Structures/EmbreeTopLevel.h"
+#include "Rendering/Core/Structures/BvhTopLevel.h"
 #include "Rendering/Core/Structures/InstructionSet.h"
 
 namespace hrt
 {
-namespace embree
+namespace bvh
 {
 
 // Rays that are traversed together at most.
@@ -25,5 +25,5 @@ struct Kernels
 // One that the processor has.
 const Kernels& kernelsFor(InstructionSet set);
 
-} // namespace embree
+} // namespace bvh
 } // namespace hrt

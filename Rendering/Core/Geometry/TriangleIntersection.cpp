@@ -1,5 +1,5 @@
 // Implements the exact kernel. Compiled with -ffp-contract=off, as the proof in the header demands.
-#include "Rendering/Core/Geometry/TriangleTest.h"
+#include "Rendering/Core/Geometry/TriangleIntersection.h"
 
 #include <cmath>
 #include <limits>
@@ -179,12 +179,6 @@ bool ShearedRay::hitsPlane(const Corners& corners, TriangleHit& hit) const
   EdgeFunctions edges(sheared);
   edges.refine(sheared);
   return edges.solve(sheared, this->ScaleZ, hit);
-}
-
-bool triangleHit(const glm::dvec3& origin, const glm::dvec3& direction, const Corners& corners,
-  double tMaximum, TriangleHit& hit)
-{
-  return ShearedRay(origin, direction).hitsTriangle(corners, tMaximum, hit);
 }
 
 bool planeHit(const glm::dvec3& origin, const glm::dvec3& direction, const Corners& corners,

@@ -1,6 +1,6 @@
 // Compiles the kernels for the compiler's own target and, where that is x86-64, for AVX2 and
 // AVX-512.
-#include "Rendering/Core/Structures/EmbreeKernels.h"
+#include "Rendering/Core/Structures/BvhKernels.h"
 
 #include "Rendering/Core/Structures/ExactLanes.h"
 
@@ -15,7 +15,7 @@
 #define HRT_AVX2 0
 #define HRT_AVX512 0
 #define HRT_TARGET
-#include "Rendering/Core/Structures/EmbreeKernels.inl"
+#include "Rendering/Core/Structures/BvhKernels.inl"
 #undef HRT_KERNELS
 #undef HRT_SET
 #undef HRT_AVX2
@@ -30,7 +30,7 @@
 #define HRT_AVX2 1
 #define HRT_AVX512 0
 #define HRT_TARGET __attribute__((target("avx2,fma")))
-#include "Rendering/Core/Structures/EmbreeKernels.inl"
+#include "Rendering/Core/Structures/BvhKernels.inl"
 #undef HRT_KERNELS
 #undef HRT_SET
 #undef HRT_AVX512
@@ -40,11 +40,11 @@
 #define HRT_SET InstructionSet::Avx512
 #define HRT_AVX512 1
 #define HRT_TARGET __attribute__((target("avx512f,avx512vl,avx512dq,avx2,fma")))
-#include "Rendering/Core/Structures/EmbreeKernels.inl"
+#include "Rendering/Core/Structures/BvhKernels.inl"
 #else
 namespace hrt
 {
-namespace embree
+namespace bvh
 {
 namespace avx2 = base;
 namespace avx512 = base;
@@ -54,7 +54,7 @@ namespace avx512 = base;
 
 namespace hrt
 {
-namespace embree
+namespace bvh
 {
 
 const Kernels& kernelsFor(InstructionSet set)
@@ -67,5 +67,5 @@ const Kernels& kernelsFor(InstructionSet set)
   return all[static_cast<std::size_t>(set)];
 }
 
-} // namespace embree
+} // namespace bvh
 } // namespace hrt

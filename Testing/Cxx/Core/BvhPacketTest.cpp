@@ -1,6 +1,6 @@
 // Packets of rays through the Embree structure answer as single rays do, bit by bit: of any fill,
 // on any instruction set, through one level and through two.
-#include "Rendering/Core/Structures/EmbreeStructure.h"
+#include "Rendering/Core/Structures/BvhStructure.h"
 #include "StructureChecks.h"
 
 #include <gtest/gtest.h>
@@ -15,7 +15,7 @@ using namespace hrt;
 using scenes::Random;
 
 // One level: everything merged. Two: some parts have moved since.
-Snapshot scene(EmbreeStructure& embree, bool twoLevels)
+Snapshot scene(BvhStructure& embree, bool twoLevels)
 {
   Snapshot s;
   scenes::addPart(s, scenes::torus(48, 24, 1.5, 0.5));
@@ -39,15 +39,15 @@ Snapshot scene(EmbreeStructure& embree, bool twoLevels)
   return s;
 }
 
-class EmbreePacket : public ::testing::TestWithParam<const char*>
+class BvhPacket : public ::testing::TestWithParam<const char*>
 {
 };
 
-TEST_P(EmbreePacket, OfAnyFillEqualsBruteForce)
+TEST_P(BvhPacket, OfAnyFillEqualsBruteForce)
 {
   for (bool twoLevels : { false, true })
   {
-    EmbreeStructure embree(GetParam());
+    BvhStructure embree(GetParam());
     const Snapshot s = scene(embree, twoLevels);
     scenes::BruteForce reference;
     reference.update(s);
@@ -69,9 +69,9 @@ TEST_P(EmbreePacket, OfAnyFillEqualsBruteForce)
   }
 }
 
-TEST_P(EmbreePacket, UnusableRaysSpoilNoOther)
+TEST_P(BvhPacket, UnusableRaysSpoilNoOther)
 {
-  EmbreeStructure embree(GetParam());
+  BvhStructure embree(GetParam());
   const Snapshot s = scene(embree, true);
   scenes::BruteForce reference;
   reference.update(s);
@@ -128,7 +128,7 @@ Snapshot soup(Random& random, int shape)
 }
 
 int wrongTogether(
-  const EmbreeStructure& embree, const Snapshot& s, Random& random, checks::Together kind, int packets)
+  const BvhStructure& embree, const Snapshot& s, Random& random, checks::Together kind, int packets)
 {
   scenes::BruteForce reference;
   reference.update(s);
@@ -144,10 +144,10 @@ int wrongTogether(
 }
 
 // Rays that are not divided: their hull decides for all of them.
-TEST_P(EmbreePacket, OfRaysThatLieTogetherEqualsBruteForce)
+TEST_P(BvhPacket, OfRaysThatLieTogetherEqualsBruteForce)
 {
   Random random(44);
-  EmbreeStructure embree(GetParam());
+  BvhStructure embree(GetParam());
   for (int kind = 0; kind < static_cast<int>(checks::Together::Count); ++kind)
   {
     for (bool twoLevels : { false, true })
@@ -166,11 +166,11 @@ TEST_P(EmbreePacket, OfRaysThatLieTogetherEqualsBruteForce)
 }
 
 // A ray that begins far off, or is of no ordinary length, spoils no other of its packet.
-TEST_P(EmbreePacket, FarRaysSpoilNoOther)
+TEST_P(BvhPacket, FarRaysSpoilNoOther)
 {
   for (bool twoLevels : { false, true })
   {
-    EmbreeStructure embree(GetParam());
+    BvhStructure embree(GetParam());
     const Snapshot s = scene(embree, twoLevels);
     scenes::BruteForce reference;
     reference.update(s);
@@ -193,7 +193,7 @@ TEST_P(EmbreePacket, FarRaysSpoilNoOther)
 
 // What decides for a packet by its hull must hold for large triangles as well, which lie around where the
 // rays begin, and at their edges, where a bound too small would show.
-TEST_P(EmbreePacket, AmongLargeTrianglesAlongTheirEdges)
+TEST_P(BvhPacket, AmongLargeTrianglesAlongTheirEdges)
 {
   Random random(43);
   Snapshot s;
@@ -203,7 +203,7 @@ TEST_P(EmbreePacket, AmongLargeTrianglesAlongTheirEdges)
     corners.emplace_back(random.inBox(3.0));
   }
   scenes::addPart(s, scenes::makeGeometry(corners));
-  EmbreeStructure embree(GetParam());
+  BvhStructure embree(GetParam());
   embree.update(s);
   scenes::BruteForce reference;
   reference.update(s);
@@ -222,12 +222,12 @@ TEST_P(EmbreePacket, AmongLargeTrianglesAlongTheirEdges)
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(InstructionSets, EmbreePacket,
+INSTANTIATE_TEST_SUITE_P(InstructionSets, BvhPacket,
   ::testing::Values("", "isa=sse2", "isa=sse4.2", "isa=avx", "isa=avx2", "isa=avx512"));
 
-TEST(EmbreePacket, EmptyStreamsAndScenes)
+TEST(BvhPacket, EmptyStreamsAndScenes)
 {
-  EmbreeStructure embree;
+  BvhStructure embree;
   embree.intersect(nullptr, nullptr, 0, RayOrder::Coherent);
   Ray rays[3];
   Hit hits[3];

@@ -1,10 +1,10 @@
 // Implements the ray structure over Embree: which hierarchies there are, by Grouping.h, and where
-// they stand. How rays go through them is in EmbreeKernels.h.
-#include "Rendering/Core/Structures/EmbreeStructure.h"
+// they stand. How rays go through them is in BvhKernels.h.
+#include "Rendering/Core/Structures/BvhStructure.h"
 
 #include "Rendering/Core/Structures/EmbreeDevice.h"
-#include "Rendering/Core/Structures/EmbreeKernels.h"
-#include "Rendering/Core/Structures/EmbreeMerged.h"
+#include "Rendering/Core/Structures/BvhKernels.h"
+#include "Rendering/Core/Structures/BvhMerged.h"
 
 #include <glm/gtc/matrix_transform.hpp>
 
@@ -17,33 +17,33 @@
 namespace hrt
 {
 
-struct EmbreeStructure::Implementation
+struct BvhStructure::Implementation
 {
   // The geometries' own hierarchies, by Geometry::version.
-  using Owns = std::unordered_map<std::uint64_t, std::shared_ptr<embree::Hierarchy>>;
+  using Owns = std::unordered_map<std::uint64_t, std::shared_ptr<bvh::Hierarchy>>;
 
-  embree::Device device;
-  const embree::Kernels& kernels;
+  bvh::Device device;
+  const bvh::Kernels& kernels;
   Grouping grouping; // of the last update
-  embree::MergedHierarchy merged, flat;
+  bvh::MergedHierarchy merged, flat;
   Owns owns;
-  std::unique_ptr<embree::TopLevel> top = std::make_unique<embree::TopLevel>();
+  std::unique_ptr<bvh::TopLevel> top = std::make_unique<bvh::TopLevel>();
 
   explicit Implementation(const std::string& configuration)
     : device(configuration)
-    , kernels(embree::kernelsFor(this->device.instructionSet()))
+    , kernels(bvh::kernelsFor(this->device.instructionSet()))
   {
   }
 
   void clear()
   {
-    this->top = std::make_unique<embree::TopLevel>();
+    this->top = std::make_unique<bvh::TopLevel>();
     this->grouping = Grouping();
-    this->merged = this->flat = embree::MergedHierarchy();
+    this->merged = this->flat = bvh::MergedHierarchy();
     this->owns.clear();
   }
 
-  void updateMerged(embree::MergedHierarchy& hierarchy, bool anew, Place place,
+  void updateMerged(bvh::MergedHierarchy& hierarchy, bool anew, Place place,
     const Snapshot& snapshot, const Grouping& now, StructureReport& report)
   {
     if (anew && place == Place::Flat && hierarchy.refit(snapshot, now, place))
@@ -71,7 +71,7 @@ struct EmbreeStructure::Implementation
     {
       return false;
     }
-    const std::shared_ptr<embree::Hierarchy> own = old->second;
+    const std::shared_ptr<bvh::Hierarchy> own = old->second;
     this->owns.erase(old);
     if (!own->refit(*part.geometry))
     {
@@ -134,8 +134,8 @@ struct EmbreeStructure::Implementation
           ++report.refitted;
           return;
         }
-        current[version] = std::make_shared<embree::Hierarchy>(
-          this->device, std::vector<embree::MemberMesh>{ { part.geometry, std::nullopt } });
+        current[version] = std::make_shared<bvh::Hierarchy>(
+          this->device, std::vector<bvh::MemberMesh>{ { part.geometry, std::nullopt } });
         ++report.built;
       });
     this->owns.swap(current);
@@ -143,7 +143,7 @@ struct EmbreeStructure::Implementation
 
   bool updateTop(const Snapshot& snapshot, const Grouping& now)
   {
-    embree::TopLevelParts parts;
+    bvh::TopLevelParts parts;
     parts.placed.reserve(snapshot.parts.size() + 2);
     parts.members.reserve(snapshot.parts.size() + this->merged.parts.size());
     this->placeMerged(this->merged, snapshot, parts);
@@ -158,10 +158,10 @@ struct EmbreeStructure::Implementation
     return this->top->update(this->device, std::move(parts), Coincidence(snapshot));
   }
 
-  void placeMerged(const embree::MergedHierarchy& hierarchy, const Snapshot& snapshot,
-    embree::TopLevelParts& parts)
+  void placeMerged(const bvh::MergedHierarchy& hierarchy, const Snapshot& snapshot,
+    bvh::TopLevelParts& parts)
   {
-    embree::Placed result;
+    bvh::Placed result;
     result.firstMember = parts.members.size();
     for (const std::size_t part : hierarchy.parts)
     {
@@ -170,7 +170,7 @@ struct EmbreeStructure::Implementation
         parts.members.emplace_back();
         continue;
       }
-      parts.members.push_back(embree::memberOf(snapshot.parts[part], snapshot.origin));
+      parts.members.push_back(bvh::memberOf(snapshot.parts[part], snapshot.origin));
       result.visibleToRays = result.visibleToRays || parts.members.back().visibleToRays;
       result.castsShadow = result.castsShadow || parts.members.back().castsShadow;
     }
@@ -192,32 +192,32 @@ struct EmbreeStructure::Implementation
     parts.hierarchies.push_back(hierarchy.hierarchy);
   }
 
-  void placeOwn(const Part& part, const glm::dvec3& origin, embree::TopLevelParts& parts)
+  void placeOwn(const Part& part, const glm::dvec3& origin, bvh::TopLevelParts& parts)
   {
-    const std::shared_ptr<embree::Hierarchy>& own = this->owns.at(part.geometry->version);
+    const std::shared_ptr<bvh::Hierarchy>& own = this->owns.at(part.geometry->version);
     parts.hierarchies.push_back(own);
     if (part.copies)
     {
       parts.copies.push_back({ own.get(), part, origin });
       return;
     }
-    embree::Placed result;
+    bvh::Placed result;
     result.firstMember = parts.members.size();
-    parts.members.push_back(embree::memberOf(part, origin));
+    parts.members.push_back(bvh::memberOf(part, origin));
     result.place(*own, parts.members.back());
     result.setBox(*own, parts.members.back());
     parts.placed.push_back(result);
   }
 };
 
-EmbreeStructure::EmbreeStructure(const std::string& configuration)
+BvhStructure::BvhStructure(const std::string& configuration)
   : Impl(std::make_unique<Implementation>(configuration))
 {
 }
 
-EmbreeStructure::~EmbreeStructure() = default;
+BvhStructure::~BvhStructure() = default;
 
-StructureReport EmbreeStructure::update(const Snapshot& snapshot)
+StructureReport BvhStructure::update(const Snapshot& snapshot)
 {
   const auto started = std::chrono::steady_clock::now();
   StructureReport report;
@@ -241,25 +241,25 @@ StructureReport EmbreeStructure::update(const Snapshot& snapshot)
   return report;
 }
 
-Hit EmbreeStructure::intersect(const Ray& ray) const
+Hit BvhStructure::intersect(const Ray& ray) const
 {
-  embree::Search search(ray, this->Impl->top->coincidence());
+  bvh::Search search(ray, this->Impl->top->coincidence());
   this->Impl->kernels.nearest(*this->Impl->top, search);
   return search.best;
 }
 
-void EmbreeStructure::intersectAll(const Ray& ray, std::vector<Hit>& hits) const
+void BvhStructure::intersectAll(const Ray& ray, std::vector<Hit>& hits) const
 {
   hits.clear();
-  embree::Search search(ray, this->Impl->top->coincidence());
+  bvh::Search search(ray, this->Impl->top->coincidence());
   search.all = &hits;
   this->Impl->kernels.nearest(*this->Impl->top, search);
   std::sort(hits.begin(), hits.end(), [](const Hit& a, const Hit& b) { return a.before(b); });
 }
 
-bool EmbreeStructure::occluded(const Ray& ray) const
+bool BvhStructure::occluded(const Ray& ray) const
 {
-  embree::Search search(ray, this->Impl->top->coincidence());
+  bvh::Search search(ray, this->Impl->top->coincidence());
   this->Impl->kernels.any(*this->Impl->top, search);
   return search.found;
 }
@@ -270,12 +270,12 @@ namespace
 // The rays of a stream in packets.
 template <class Trace, class Result>
 void tracePackets(
-  const embree::TopLevel& top, Trace trace, const Ray* rays, Result* results, std::size_t count)
+  const bvh::TopLevel& top, Trace trace, const Ray* rays, Result* results, std::size_t count)
 {
-  for (std::size_t first = 0; first < count; first += embree::kPacket)
+  for (std::size_t first = 0; first < count; first += bvh::kPacket)
   {
-    const std::size_t end = std::min(first + embree::kPacket, count);
-    for (std::size_t next = end; next < std::min(end + embree::kPacket, count); ++next)
+    const std::size_t end = std::min(first + bvh::kPacket, count);
+    for (std::size_t next = end; next < std::min(end + bvh::kPacket, count); ++next)
     {
       __builtin_prefetch(rays + next);
     }
@@ -285,7 +285,7 @@ void tracePackets(
 
 } // namespace
 
-void EmbreeStructure::intersect(const Ray* rays, Hit* hits, std::size_t count, RayOrder order) const
+void BvhStructure::intersect(const Ray* rays, Hit* hits, std::size_t count, RayOrder order) const
 {
   if (order == RayOrder::Incoherent)
   {
@@ -295,7 +295,7 @@ void EmbreeStructure::intersect(const Ray* rays, Hit* hits, std::size_t count, R
   tracePackets(*this->Impl->top, this->Impl->kernels.nearestOfPacket, rays, hits, count);
 }
 
-void EmbreeStructure::occluded(
+void BvhStructure::occluded(
   const Ray* rays, std::uint8_t* occluded, std::size_t count, RayOrder order) const
 {
   if (order == RayOrder::Incoherent)

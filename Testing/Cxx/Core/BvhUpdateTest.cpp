@@ -1,6 +1,6 @@
 // The Embree structure over many updates: whatever has moved, deformed, come, gone or come to rest,
 // every snapshot's answers are those of a structure that sees it for the first time, bit by bit.
-#include "Rendering/Core/Structures/EmbreeStructure.h"
+#include "Rendering/Core/Structures/BvhStructure.h"
 #include "Rendering/Core/Structures/Grouping.h"
 #include "StructureChecks.h"
 
@@ -29,7 +29,7 @@ glm::dmat4 at(const glm::dvec3& p)
   return glm::translate(glm::dmat4(1.0), p);
 }
 
-int wrongAgainstBruteForce(const EmbreeStructure& embree, const Snapshot& s, Random& random,
+int wrongAgainstBruteForce(const BvhStructure& embree, const Snapshot& s, Random& random,
   int rays = 100, double half = 3.0)
 {
   scenes::BruteForce reference;
@@ -61,7 +61,7 @@ std::shared_ptr<const Geometry> wave(double phase, double height = 0.3)
 
 // Sixteen patterns over four parts, as Embree's own update test: bit i of the pattern, part i
 // moves. A part moves rigidly when even, deforms when odd; 1 to 99 rays a step.
-TEST(EmbreeUpdate, EveryPatternOfMovesEqualsBruteForce)
+TEST(BvhUpdate, EveryPatternOfMovesEqualsBruteForce)
 {
   Random random(31);
   for (unsigned int pattern = 0; pattern < 16; ++pattern)
@@ -71,7 +71,7 @@ TEST(EmbreeUpdate, EveryPatternOfMovesEqualsBruteForce)
     {
       scenes::addPart(s, wave(i), at({ 0, 0, 0.5 * i }));
     }
-    EmbreeStructure embree;
+    BvhStructure embree;
     for (int step = 0; step < 12; ++step)
     {
       for (unsigned int i = 0; i < 4; ++i)
@@ -91,7 +91,7 @@ TEST(EmbreeUpdate, EveryPatternOfMovesEqualsBruteForce)
 }
 
 // 190 moving parts over a still floor; origin and numbers change as they do in an animation.
-TEST(EmbreeUpdate, EveryFrameOfAnAnimationEqualsAFreshStructure)
+TEST(BvhUpdate, EveryFrameOfAnAnimationEqualsAFreshStructure)
 {
   Random random(32);
   const auto ball = scenes::sphere(12, 6), ring = scenes::torus(12, 6, 1.0, 0.3);
@@ -101,7 +101,7 @@ TEST(EmbreeUpdate, EveryFrameOfAnAnimationEqualsAFreshStructure)
   {
     scenes::addPart(s, i % 2 ? ball : ring);
   }
-  EmbreeStructure embree;
+  BvhStructure embree;
   StructureReport report;
   for (int frame = 0; frame < 20; ++frame)
   {
@@ -114,7 +114,7 @@ TEST(EmbreeUpdate, EveryFrameOfAnAnimationEqualsAFreshStructure)
     }
     s.origin = { 0.1 * frame, 0, -0.05 * frame };
     report = embree.update(s);
-    EmbreeStructure fresh;
+    BvhStructure fresh;
     fresh.update(s);
     EXPECT_EQ(checks::wrongAnswers(embree, fresh, checks::randomRays(s, random, 400, 8.0)), 0);
     EXPECT_EQ(wrongAgainstBruteForce(embree, s, random, 20, 8.0), 0) << frame;
@@ -124,7 +124,7 @@ TEST(EmbreeUpdate, EveryFrameOfAnAnimationEqualsAFreshStructure)
   EXPECT_TRUE(report.partsRebuilt);
 }
 
-TEST(EmbreeUpdate, PartsThatComeGoRestAndHideEqualBruteForce)
+TEST(BvhUpdate, PartsThatComeGoRestAndHideEqualBruteForce)
 {
   Random random(33);
   const std::shared_ptr<const Geometry> meshes[] = { scenes::sphere(10, 5), wave(0), wave(1),
@@ -132,7 +132,7 @@ TEST(EmbreeUpdate, PartsThatComeGoRestAndHideEqualBruteForce)
     scenes::torus(12, 6, 1, 0.4) };
   Snapshot s;
   std::uint64_t key = 1000;
-  EmbreeStructure embree;
+  BvhStructure embree;
   for (int step = 0; step < 150; ++step)
   {
     if (step % 50 < 20) // then a rest in which all join again
@@ -165,13 +165,13 @@ TEST(EmbreeUpdate, PartsThatComeGoRestAndHideEqualBruteForce)
   EXPECT_FALSE(embree.intersect(Ray()).valid());
 }
 
-TEST(EmbreeUpdate, DeformingMeshesAreRefittedUntilTheyDecay)
+TEST(BvhUpdate, DeformingMeshesAreRefittedUntilTheyDecay)
 {
   Random random(34);
   Snapshot s;
   scenes::addPart(s, wave(0));
   scenes::addPart(s, scenes::sphere(32, 16), at({ 0, 0, 3 }));
-  EmbreeStructure embree;
+  BvhStructure embree;
   embree.update(s);
   std::uint64_t built = 0, refitted = 0;
   for (int step = 1; step <= 20; ++step)
@@ -200,7 +200,7 @@ TEST(EmbreeUpdate, DeformingMeshesAreRefittedUntilTheyDecay)
   EXPECT_EQ(wrongAgainstBruteForce(embree, s, random), 0);
 }
 
-TEST(EmbreeUpdate, BuildsOnlyWhatIsNew)
+TEST(BvhUpdate, BuildsOnlyWhatIsNew)
 {
   const auto ball = scenes::sphere(16, 8), ring = scenes::torus(16, 8, 1, 0.3);
   Snapshot s;
@@ -208,7 +208,7 @@ TEST(EmbreeUpdate, BuildsOnlyWhatIsNew)
   scenes::addPart(s, ball);
   scenes::addPart(s, ball, at({ 5, 0, 0 }));
   scenes::addPart(s, ring, at({ 0, 9, 0 }));
-  EmbreeStructure embree;
+  BvhStructure embree;
   const auto expectReport = [&](std::uint64_t built, std::uint64_t reused, bool parts)
   {
     const StructureReport report = embree.update(s);
@@ -244,7 +244,7 @@ TEST(EmbreeUpdate, BuildsOnlyWhatIsNew)
 // Matrices that invert badly, beside parts that move: those must not lose hits either.
 // Parts too small for a hierarchy each share a flat one. While they move on it is refitted, and the
 // upper level with it; thrown together it is built anew, as when one of them goes.
-TEST(EmbreeUpdate, TinyMovingPartsAreRefittedUntilTheyDecay)
+TEST(BvhUpdate, TinyMovingPartsAreRefittedUntilTheyDecay)
 {
   Random random(77);
   Snapshot s;
@@ -255,7 +255,7 @@ TEST(EmbreeUpdate, TinyMovingPartsAreRefittedUntilTheyDecay)
     scenes::addPart(s, scenes::makeGeometry({ glm::vec3(0.0f), a + b, b }),
       at({ (i % 8) * 0.5 - 2, (i / 8) * 0.5 - 2, 0 }));
   }
-  EmbreeStructure embree;
+  BvhStructure embree;
   embree.update(s);
   int refitted = 0, built = 0;
   for (int step = 0; step < 12; ++step)
@@ -286,7 +286,7 @@ TEST(EmbreeUpdate, TinyMovingPartsAreRefittedUntilTheyDecay)
   EXPECT_EQ(built, 3);
 }
 
-TEST(EmbreeUpdate, SkewedPartsEqualBruteForce)
+TEST(BvhUpdate, SkewedPartsEqualBruteForce)
 {
   Random random(35);
   Snapshot s;
@@ -295,7 +295,7 @@ TEST(EmbreeUpdate, SkewedPartsEqualBruteForce)
     scenes::addPart(s, scenes::torus(20, 10, 1.0, 0.4),
       glm::scale(glm::rotate(glm::dmat4(1.0), thin, { 1, 2, 3 }), { 1.0, thin, 1.0 }));
   }
-  EmbreeStructure embree;
+  BvhStructure embree;
   for (int step = 0; step < 6; ++step)
   {
     for (Part& part : s.parts)
@@ -307,7 +307,7 @@ TEST(EmbreeUpdate, SkewedPartsEqualBruteForce)
   }
 }
 
-TEST(EmbreeUpdate, AHundredThousandParts)
+TEST(BvhUpdate, AHundredThousandParts)
 {
   Random random(36);
   Snapshot s;
@@ -317,7 +317,7 @@ TEST(EmbreeUpdate, AHundredThousandParts)
     scenes::addPart(
       s, triangle, glm::rotate(at(random.inBox(2.0)), random(0, 6), random.direction()));
   }
-  EmbreeStructure embree;
+  BvhStructure embree;
   EXPECT_EQ(embree.update(s).built, 1u);
   EXPECT_EQ(wrongAgainstBruteForce(embree, s, random, 12), 0);
   for (int i = 0; i < 100000; i += 10)
@@ -328,7 +328,7 @@ TEST(EmbreeUpdate, AHundredThousandParts)
   EXPECT_EQ(wrongAgainstBruteForce(embree, s, random, 12), 0);
 }
 
-TEST(EmbreeUpdate, TheNumberOfThreadsDoesNotShow)
+TEST(BvhUpdate, TheNumberOfThreadsDoesNotShow)
 {
   for (std::size_t threads : { 1, 2, 5 })
   {
@@ -337,7 +337,7 @@ TEST(EmbreeUpdate, TheNumberOfThreadsDoesNotShow)
     Snapshot s;
     scenes::addPart(s, scenes::torus(60, 30, 1.0, 0.4));
     scenes::addPart(s, wave(0));
-    EmbreeStructure embree("threads=" + std::to_string(threads));
+    BvhStructure embree("threads=" + std::to_string(threads));
     embree.update(s);
     s.parts[1].localToWorld[3][0] += 0.1;
     embree.update(s);

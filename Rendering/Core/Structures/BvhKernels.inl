@@ -1,15 +1,15 @@
-// Single rays through both levels; packets in EmbreePackets.inl. Included once for each instruction
-// set (EmbreeKernels.cpp), which defines HRT_KERNELS, the namespace, HRT_SET, the set's name,
+// Single rays through both levels; packets in BvhPackets.inl. Included once for each instruction
+// set (BvhKernels.cpp), which defines HRT_KERNELS, the namespace, HRT_SET, the set's name,
 // HRT_TARGET, the functions' attribute, and HRT_AVX2 and HRT_AVX512, what may be used.
 
 namespace hrt
 {
-namespace embree
+namespace bvh
 {
 namespace HRT_KERNELS
 {
 
-#include "Rendering/Core/Structures/EmbreeLanes.inl"
+#include "Rendering/Core/Structures/BvhLanes.inl"
 
 constexpr unsigned int kLanes = TriangleBlock::kLanes;
 static_assert(WideNode::kWidth == kLanes, "a value's lanes are a node's children");
@@ -29,11 +29,11 @@ struct NodeRay
     for (int axis = 0; axis < 3; ++axis)
     {
       const float inverse = ray.inverse[axis], offset = ray.origin[axis] * inverse;
-      this->inverse[axis] = all(inverse);
+      this->inverse[axis] = broadcast(inverse);
       this->nearer[axis] = std::signbit(inverse) ? 1 : 0;
       const float margin = kFar ? static_cast<float>(ray.margin) * std::fabs(inverse) : 0.0f;
-      this->offset[0][axis] = all(offset + margin);
-      this->offset[kFar ? 1 : 0][axis] = all(offset - margin);
+      this->offset[0][axis] = broadcast(offset + margin);
+      this->offset[kFar ? 1 : 0][axis] = broadcast(offset - margin);
     }
   }
 
@@ -42,10 +42,10 @@ struct NodeRay
   HRT_LANES unsigned int meet(const WideNode& node, Floats end, Floats& start) const
   {
     const int x = this->nearer[0], y = this->nearer[1], z = this->nearer[2];
-    start = most(most(this->plane(node, 0, x), this->plane(node, 1, y)),
-      most(this->plane(node, 2, z), all(0.0f)));
-    const Floats stop = least(least(this->plane(node, 0, x ^ 1), this->plane(node, 1, y ^ 1)),
-      least(this->plane(node, 2, z ^ 1), end));
+    start = max(max(this->plane(node, 0, x), this->plane(node, 1, y)),
+      max(this->plane(node, 2, z), broadcast(0.0f)));
+    const Floats stop = min(min(this->plane(node, 0, x ^ 1), this->plane(node, 1, y ^ 1)),
+      min(this->plane(node, 2, z ^ 1), end));
     return lessEqual(start, stop);
   }
 
@@ -97,7 +97,7 @@ HRT_LANES void traverse(const WideTree& tree, const Met& ray, float end, Leaves&
     {
       const WideNode& node = nodes[at];
       Floats start;
-      unsigned int met = ray.meet(node, all(end), start);
+      unsigned int met = ray.meet(node, broadcast(end), start);
       if (met == 0)
       {
         goto next;
@@ -196,8 +196,8 @@ struct SieveEnd
   V late, before;
 
   HRT_LANES SieveEnd(V end, const SieveSlack& slack)
-    : late(end + V::all(slack.depth))
-    , before(mulSub(end, V::all(1.0f - 0x1p-21f), V::all(slack.depth)))
+    : late(end + V::broadcast(slack.depth))
+    , before(mulSub(end, V::broadcast(1.0f - 0x1p-21f), V::broadcast(slack.depth)))
   {
   }
 };
@@ -222,18 +222,18 @@ struct Sieved
     const V bx = subMul(b.x - ray.x, ray.shearX, bz), by = subMul(b.y - ray.y, ray.shearY, bz);
     const V cx = subMul(c.x - ray.x, ray.shearX, cz), cy = subMul(c.y - ray.y, ray.shearY, cz);
     const V u = mulSub(cx, by, cy * bx), v = mulSub(ax, cy, ay * cx), w = mulSub(bx, ay, by * ax);
-    const V most3 = most(u, most(v, w));
-    this->inside = most(least(u, least(v, w)), V::all(0.0f) - most3);
-    this->bound = mulAdd(V::all(slack.edge), spread(ax, ay, bx, by, cx, cy), V::all(slack.floor));
-    this->nearest = least(az, least(bz, cz));
-    this->farthest = most(az, most(bz, cz));
+    const V most3 = max(u, max(v, w));
+    this->inside = max(min(u, min(v, w)), V::broadcast(0.0f) - most3);
+    this->bound = mulAdd(V::broadcast(slack.edge), spread(ax, ay, bx, by, cx, cy), V::broadcast(slack.floor));
+    this->nearest = min(az, min(bz, cz));
+    this->farthest = max(az, max(bz, cz));
   }
 
   // Lanes that may be hit before the end; a NaN may.
   HRT_LANES unsigned int possible(const SieveEnd<V>& end, const SieveSlack& slack) const
   {
-    const unsigned int outside = less(this->inside, V::all(0.0f) - this->bound) |
-      less(end.late, this->nearest) | less(this->farthest, V::all(-slack.depth));
+    const unsigned int outside = less(this->inside, V::broadcast(0.0f) - this->bound) |
+      less(end.late, this->nearest) | less(this->farthest, V::broadcast(-slack.depth));
     return outside ^ ((1u << V::kLanes) - 1u);
   }
 
@@ -284,9 +284,9 @@ struct Triangles
     , slack(sieveSlack)
     , begin(r.begin(s.ray->twinEnd) + sieveSlack.depth)
     , axes(r.direction)
-    , sieveRay{ all(r.origin[axes.x]), all(r.origin[axes.y]),
-      all(r.origin[axes.z] * r.direction[axes.z]), all(r.direction[axes.x]),
-      all(r.direction[axes.y]), all(r.direction[axes.z]) }
+    , sieveRay{ broadcast(r.origin[axes.x]), broadcast(r.origin[axes.y]),
+      broadcast(r.origin[axes.z] * r.direction[axes.z]), broadcast(r.direction[axes.x]),
+      broadcast(r.direction[axes.y]), broadcast(r.direction[axes.z]) }
   {
   }
 
@@ -304,8 +304,8 @@ struct Triangles
     const Sieved<Floats> sieved(this->corner(block, 0), this->corner(block, 1),
       this->corner(block, 2), this->sieveRay, this->slack,
       [](Floats ax, Floats ay, Floats bx, Floats by, Floats cx, Floats cy) HRT_TARGET
-      { return most(size(ax) + size(ay), most(size(bx) + size(by), size(cx) + size(cy))); });
-    const SieveEnd<Floats> sieveEnd(all(end), this->slack);
+      { return max(size(ax) + size(ay), max(size(bx) + size(by), size(cx) + size(cy))); });
+    const SieveEnd<Floats> sieveEnd(broadcast(end), this->slack);
     const unsigned int possible = sieved.possible(sieveEnd, this->slack);
     if (possible == 0)
     {
@@ -313,7 +313,7 @@ struct Triangles
     }
     if (kAny)
     {
-      const SieveResult lanes = { possible, sieved.sure(sieveEnd, all(this->begin)) };
+      const SieveResult lanes = { possible, sieved.sure(sieveEnd, broadcast(this->begin)) };
       this->search.found = this->hierarchy.any(number, lanes, this->members, this->search);
       return this->search.found ? -1.0f : end;
     }
@@ -484,10 +484,10 @@ HRT_TARGET void any(const TopLevel& scene, Search& search)
   searchScene<true>(scene, search);
 }
 
-#include "Rendering/Core/Structures/EmbreePackets.inl"
+#include "Rendering/Core/Structures/BvhPackets.inl"
 
 #undef HRT_LANES
 
 } // namespace HRT_KERNELS
-} // namespace embree
+} // namespace bvh
 } // namespace hrt

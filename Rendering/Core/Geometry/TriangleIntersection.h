@@ -100,9 +100,7 @@ private:
   bool Valid = false;
 };
 
-// The same for a single triangle.
-bool triangleHit(const glm::dvec3& origin, const glm::dvec3& direction, const Corners& corners,
-  double tMaximum, TriangleHit& hit);
+// ShearedRay::hitsPlane for a single triangle.
 bool planeHit(const glm::dvec3& origin, const glm::dvec3& direction, const Corners& corners,
   TriangleHit& hit);
 

@@ -1,5 +1,5 @@
 // Implements the hierarchy: building, refitting, and the exact test of what its blocks propose.
-#include "Rendering/Core/Structures/EmbreeHierarchy.h"
+#include "Rendering/Core/Structures/BvhHierarchy.h"
 
 #include "Rendering/Core/Geometry/Coordinates.h"
 #include "Rendering/Core/Structures/Grouping.h"
@@ -9,7 +9,7 @@
 
 namespace hrt
 {
-namespace embree
+namespace bvh
 {
 
 namespace
@@ -331,5 +331,5 @@ bool Hierarchy::any(
   return false;
 }
 
-} // namespace embree
+} // namespace bvh
 } // namespace hrt

@@ -1,11 +1,11 @@
 // Sixteen neighbouring rays together. Their hull, a frustum, goes down the tree in place of them,
 // at the cost of one ray; in the leaves it picks the triangles, each of which the sieve then tests
 // against all rays at once. Rays that do not lie together, by direction or by width, go singly.
-// Included by EmbreeKernels.inl.
+// Included by BvhKernels.inl.
 
-#include "Rendering/Core/Structures/EmbreePacketRays.inl"
+#include "Rendering/Core/Structures/BvhPacketRays.inl"
 
-#include "Rendering/Core/Structures/EmbreeFrustum.inl"
+#include "Rendering/Core/Structures/BvhFrustum.inl"
 
 // What the rays of a packet look for, shared by all levels of their traversal.
 struct Packet
@@ -19,7 +19,7 @@ struct Packet
   SceneRays rays;
 };
 
-#include "Rendering/Core/Structures/EmbreeCandidates.inl"
+#include "Rendering/Core/Structures/BvhCandidates.inl"
 
 // --- Triangles ----------------------------------------------------------------------------------
 
@@ -47,14 +47,14 @@ struct PacketTriangles
     , candidates(h, m, p)
     , along{ std::size_t(f.x) * kLanes, std::size_t(f.y) * kLanes, std::size_t(f.z) * kLanes }
   {
-    const RayFloats forward = allRays(f.forward);
+    const RayFloats forward = broadcastRays(f.forward);
     for (unsigned int first = 0; first < kPacket; first += RayFloats::kLanes)
     {
       this->sieveRays[first / RayFloats::kLanes] = { loadRays(e.origin[f.x].of + first),
         loadRays(e.origin[f.y].of + first), loadRays(e.origin[f.z].of + first) * forward,
         loadRays(e.direction[f.x].of + first), loadRays(e.direction[f.y].of + first), forward };
       this->begins[first / RayFloats::kLanes] =
-        loadRays(e.begin.of + first) + allRays(h.slack().depth);
+        loadRays(e.begin.of + first) + broadcastRays(h.slack().depth);
     }
   }
 
@@ -68,9 +68,9 @@ struct PacketTriangles
       {
         const Floats a = load(block.corner[0][axis]), b = load(block.corner[1][axis]),
                      c = load(block.corner[2][axis]);
-        return side == 0 ? least(a, least(b, c)) : most(a, most(b, c));
+        return side == 0 ? min(a, min(b, c)) : max(a, max(b, c));
       },
-      all(end));
+      broadcast(end));
     unsigned int lanes = met.boxes & ~equal(block.triangle, kNoTriangle);
     if (lanes == 0)
     {
@@ -79,7 +79,7 @@ struct PacketTriangles
     alignas(sizeof(Floats)) float spread[kLanes];
     store(spread, met.spread);
     RayFloats farthest[kGroups];
-    std::fill(farthest, farthest + kGroups, allRays(std::numeric_limits<float>::infinity()));
+    std::fill(farthest, farthest + kGroups, broadcastRays(std::numeric_limits<float>::infinity()));
     bool shorter = false;
     for (; lanes != 0; lanes &= lanes - 1)
     {
@@ -111,24 +111,24 @@ private:
   HRT_LANES SieveCorner<RayFloats> corner(const TriangleBlock& block, int i, int lane) const
   {
     const float* const axes = block.corner[i][0] + lane;
-    return { allRays(axes[this->along[0]]), allRays(axes[this->along[1]]),
-      allRays(axes[this->along[2]]) };
+    return { broadcastRays(axes[this->along[0]]), broadcastRays(axes[this->along[1]]),
+      broadcastRays(axes[this->along[2]]) };
   }
 
   // A triangle that is surely hit ends the search at its farthest corner, and the window behind it,
   // even before the exact kernel has said where the hit is. Whether it does for some ray.
   HRT_LANES bool shorten(const RayFloats (&farthest)[kGroups])
   {
-    const RayFloats depth = allRays(2.0f * this->hierarchy.slack().depth);
+    const RayFloats depth = broadcastRays(2.0f * this->hierarchy.slack().depth);
     unsigned int shorter = 0;
     for (unsigned int group = 0; group < kGroups; ++group)
     {
       const RayFloats behind = loadRays(this->entry.behind.of + group * RayFloats::kLanes) + depth;
-      const RayFloats after = (farthest[group] + behind) * allRays(1.0f + 0x1p-22f);
+      const RayFloats after = (farthest[group] + behind) * broadcastRays(1.0f + 0x1p-22f);
       float* const at = this->entry.end.of + group * RayFloats::kLanes;
       const RayFloats end = loadRays(at);
       shorter |= less(after, end);
-      store(at, least(after, end));
+      store(at, min(after, end));
     }
     return shorter != 0;
   }
@@ -157,12 +157,12 @@ private:
     {
       const unsigned int first = group * RayFloats::kLanes;
       const Sieved<RayFloats> sieved(a, b, c, this->sieveRays[group], slack,
-        [spread](auto...) HRT_TARGET { return allRays(spread); });
+        [spread](auto...) HRT_TARGET { return broadcastRays(spread); });
       const SieveEnd<RayFloats> end(loadRays(this->entry.end.of + first), slack);
       met.possible |= sieved.possible(end, slack) << first & others;
       const unsigned int sure = sieved.sure(end, this->begins[group]) & others >> first;
       met.sure |= sure << first;
-      farthest[group] = where(sure, least(farthest[group], sieved.farthest), farthest[group]);
+      farthest[group] = where(sure, min(farthest[group], sieved.farthest), farthest[group]);
     }
     if (met.possible == 0)
     {

@@ -1,7 +1,7 @@
 // What floating point makes hard for a ray structure: closed meshes aimed at their edges and
 // vertices, near the origin and far from it, and slivers seen at grazing angles. The counts here
 // are for every run of the tests; HRT_TEST_INTENSITY multiplies them.
-#include "Rendering/Core/Structures/EmbreeStructure.h"
+#include "Rendering/Core/Structures/BvhStructure.h"
 #include "StructureChecks.h"
 
 #include <gtest/gtest.h>
@@ -21,7 +21,7 @@ int intensity()
 }
 
 // Rays from inside the sphere, 16 neighbours at a time.
-int leaksOf(const Snapshot& s, const EmbreeStructure& embree, Random& random, int aim, int packets)
+int leaksOf(const Snapshot& s, const BvhStructure& embree, Random& random, int aim, int packets)
 {
   int leaks = 0;
   for (int packet = 0; packet < packets; ++packet)
@@ -47,7 +47,7 @@ int leaksOf(const Snapshot& s, const EmbreeStructure& embree, Random& random, in
   return leaks;
 }
 
-TEST(EmbreeStress, NothingLeaksOutOfASphere)
+TEST(BvhStress, NothingLeaksOutOfASphere)
 {
   for (const glm::dvec3& centre : { glm::dvec3(0.0), glm::dvec3(148376, 1234, -223423) })
   {
@@ -62,7 +62,7 @@ TEST(EmbreeStress, NothingLeaksOutOfASphere)
           glm::scale(glm::translate(glm::dmat4(1.0), centre), glm::dvec3(3.0)));
       }
       s.origin = centre;
-      EmbreeStructure embree;
+      BvhStructure embree;
       embree.update(s);
       Random random(51);
       for (int aim = 0; aim < 3; ++aim)
@@ -75,7 +75,7 @@ TEST(EmbreeStress, NothingLeaksOutOfASphere)
 
 // The same for rays that lie together: sixteen neighbouring corners, and points on the edges between
 // them, from one point and from sixteen that lie as close. Every one must hit, and what single rays do.
-TEST(EmbreeStress, NoPacketLeaksOutOfASphere)
+TEST(BvhStress, NoPacketLeaksOutOfASphere)
 {
   for (const glm::dvec3& centre : { glm::dvec3(0.0), glm::dvec3(148376, 1234, -223423) })
   {
@@ -83,7 +83,7 @@ TEST(EmbreeStress, NoPacketLeaksOutOfASphere)
     scenes::addPart(s, scenes::sphere(400, 200),
       glm::scale(glm::translate(glm::dmat4(1.0), centre), glm::dvec3(2.0)));
     s.origin = centre;
-    EmbreeStructure embree;
+    BvhStructure embree;
     embree.update(s);
     Random random(54);
     int leaks = 0, different = 0;
@@ -118,7 +118,7 @@ TEST(EmbreeStress, NoPacketLeaksOutOfASphere)
 // Triangles of 11 x 10 x 0.7 seen from up to 600 at 0.02 to 2 degrees. A ray is aimed at a known
 // point of the plane; whether it meets the triangle is known when that point's weights keep away
 // from zero by more than the aim's own rounding.
-TEST(EmbreeStress, SliversAreHitAndMissedRightly)
+TEST(BvhStress, SliversAreHitAndMissedRightly)
 {
   Random random(52);
   int falseHits = 0, misses = 0, hits = 0;
@@ -130,7 +130,7 @@ TEST(EmbreeStress, SliversAreHitAndMissedRightly)
                      c = a + 10.3 * along + 0.7 * across;
     Snapshot s;
     scenes::addPart(s, scenes::makeGeometry({ glm::vec3(a), glm::vec3(b), glm::vec3(c) }));
-    EmbreeStructure embree;
+    BvhStructure embree;
     embree.update(s);
     const Corners exact = checks::cornersOf(s, 0);
     const glm::dvec3 e1 = exact.b - exact.a, e2 = exact.c - exact.a;
@@ -159,7 +159,7 @@ TEST(EmbreeStress, SliversAreHitAndMissedRightly)
 }
 
 // Slivers, needles and specks of any size together, against brute force.
-TEST(EmbreeStress, TrianglesOfAllSizesEqualBruteForce)
+TEST(BvhStress, TrianglesOfAllSizesEqualBruteForce)
 {
   Random random(53);
   for (double scale : { 1e-25, 1e-12, 1.0, 1e12 })
@@ -179,7 +179,7 @@ TEST(EmbreeStress, TrianglesOfAllSizesEqualBruteForce)
     scenes::addPart(s, scenes::makeGeometry(positions));
     scenes::addPart(
       s, scenes::makeGeometry(positions), glm::rotate(glm::dmat4(1.0), 1.0, { 1, 2, 3 }));
-    EmbreeStructure embree;
+    BvhStructure embree;
     scenes::BruteForce reference;
     embree.update(s);
     reference.update(s);
@@ -193,7 +193,7 @@ TEST(EmbreeStress, TrianglesOfAllSizesEqualBruteForce)
   }
 }
 
-TEST(EmbreeStress, IdenticalTrianglesGiveTheLargestNumber)
+TEST(BvhStress, IdenticalTrianglesGiveTheLargestNumber)
 {
   std::vector<glm::vec3> positions;
   for (int i = 0; i < 20000; ++i)
@@ -202,7 +202,7 @@ TEST(EmbreeStress, IdenticalTrianglesGiveTheLargestNumber)
   }
   Snapshot s;
   scenes::addPart(s, scenes::makeGeometry(positions));
-  EmbreeStructure embree;
+  BvhStructure embree;
   embree.update(s);
   Ray ray;
   ray.origin = { 0.25, 0.25, 1 };

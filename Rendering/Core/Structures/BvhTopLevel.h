@@ -2,7 +2,7 @@
 // boxes: the upper of the two levels that a ray goes through.
 #pragma once
 
-#include "Rendering/Core/Structures/EmbreeHierarchy.h"
+#include "Rendering/Core/Structures/BvhHierarchy.h"
 #include "Rendering/Core/Structures/Placement.h"
 
 #include <memory>
@@ -10,7 +10,7 @@
 
 namespace hrt
 {
-namespace embree
+namespace bvh
 {
 
 // The part, or its copy of that number, as its hierarchy sees it.
@@ -146,5 +146,5 @@ private:
   double CostWhenBuilt = 0.0;
 };
 
-} // namespace embree
+} // namespace bvh
 } // namespace hrt

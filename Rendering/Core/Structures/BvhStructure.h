@@ -6,7 +6,7 @@
 // done here: trees of eight boxes a node, grown by a derived bound (WideTree.h, TraversalRay.h), over
 // blocks of up to eight neighbouring triangles; a sieve in single precision drops what surely is not
 // hit (TriangleBlock.h); and every triangle that is left is decided by the kernel of
-// Geometry/TriangleTest.h in double. The result is, bit by bit, that of a loop over all triangles,
+// Geometry/TriangleIntersection.h in double. The result is, bit by bit, that of a loop over all triangles,
 // for any instruction set, packet and grouping.
 //
 // Which parts share a hierarchy is the policy of Grouping.h. A moved part costs the hierarchy over
@@ -21,7 +21,7 @@
 namespace hrt
 {
 
-class EmbreeStructure final : public Structure
+class BvhStructure final : public Structure
 {
 public:
   // `configuration` goes to rtcNewDevice, e.g. "isa=sse2"; empty: Embree's choice. Every error that
@@ -30,11 +30,11 @@ public:
   //
   // Embree recommends flush-to-zero; it is not set here, and must not be set by a host's threads:
   // the exact kernel needs gradual underflow, and the mode would leak into all code of the thread.
-  explicit EmbreeStructure(const std::string& configuration = {});
-  ~EmbreeStructure() override;
+  explicit BvhStructure(const std::string& configuration = {});
+  ~BvhStructure() override;
 
-  EmbreeStructure(const EmbreeStructure&) = delete;
-  EmbreeStructure& operator=(const EmbreeStructure&) = delete;
+  BvhStructure(const BvhStructure&) = delete;
+  BvhStructure& operator=(const BvhStructure&) = delete;
 
   StructureReport update(const Snapshot& snapshot) override;
   Hit intersect(const Ray& ray) const override;

@@ -1,13 +1,13 @@
 // Implements the merging of parts.
-#include "Rendering/Core/Structures/EmbreeMerged.h"
+#include "Rendering/Core/Structures/BvhMerged.h"
 
-#include "Rendering/Core/Geometry/TriangleTest.h"
+#include "Rendering/Core/Geometry/TriangleIntersection.h"
 
 #include <utility>
 
 namespace hrt
 {
-namespace embree
+namespace bvh
 {
 
 void MergedHierarchy::build(
@@ -70,5 +70,5 @@ void MergedHierarchy::follow(const Grouping& grouping, Place place, std::size_t 
   }
 }
 
-} // namespace embree
+} // namespace bvh
 } // namespace hrt

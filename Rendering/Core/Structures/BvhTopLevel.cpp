@@ -1,6 +1,6 @@
 // Implements the upper level: refitted when parts have moved, and built anew when parts came or went or
 // when refitting has made it too much worse.
-#include "Rendering/Core/Structures/EmbreeTopLevel.h"
+#include "Rendering/Core/Structures/BvhTopLevel.h"
 
 #include "Rendering/Core/Structures/Grouping.h"
 
@@ -9,7 +9,7 @@
 
 namespace hrt
 {
-namespace embree
+namespace bvh
 {
 
 namespace
@@ -182,5 +182,5 @@ void TopLevel::fit()
     [this](std::uint32_t leaf) { return this->boxOf(this->PartOfLeaf[leaf]); });
 }
 
-} // namespace embree
+} // namespace bvh
 } // namespace hrt

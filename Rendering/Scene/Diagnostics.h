@@ -22,7 +22,7 @@ struct Extraction;
 // without area and normals without direction are counted only: VTK says nothing of them either.
 std::string describeProblems(const Extraction& extraction);
 
-class Complaints
+class Diagnostics
 {
 public:
   // So many objects are spoken of by name in an update; the others are counted.

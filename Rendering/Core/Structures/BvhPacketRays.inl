@@ -1,5 +1,5 @@
 // The rays of a packet side by side, as they are given and where they enter a tree's outer box.
-// Included by EmbreePackets.inl.
+// Included by BvhPackets.inl.
 
 // A number a ray.
 template <class T>

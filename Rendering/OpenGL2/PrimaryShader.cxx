@@ -1,5 +1,5 @@
-// See RayCaster.h.
-#include "Rendering/OpenGL2/RayCaster.h"
+// See PrimaryShader.h.
+#include "Rendering/OpenGL2/PrimaryShader.h"
 
 #include "Rendering/OpenGL2/OffscreenState.h"
 #include "Rendering/OpenGL2/PixelStore.h"
@@ -52,7 +52,7 @@ void setRays(vtkShaderProgram* program, const CameraRays& rays)
 } // namespace
 
 //------------------------------------------------------------------------------
-RayCaster::RayCaster(ObjectPool& pool)
+PrimaryShader::PrimaryShader(ObjectPool& pool)
   : Share(pool)
   , Framebuffer(pool.makeFramebuffer())
   , VertexArray(pool.makeVertexArray())
@@ -60,13 +60,13 @@ RayCaster::RayCaster(ObjectPool& pool)
 }
 
 //------------------------------------------------------------------------------
-bool RayCaster::draw(vtkOpenGLRenderWindow* window, const Inputs& inputs, const Image2D& target)
+bool PrimaryShader::draw(vtkOpenGLRenderWindow* window, const Inputs& inputs, const Image2D& target)
 {
   return this->shade(window, inputs, target, -1, nullptr);
 }
 
 //------------------------------------------------------------------------------
-bool RayCaster::readShadow(vtkOpenGLRenderWindow* window, const Inputs& inputs, int light,
+bool PrimaryShader::readShadow(vtkOpenGLRenderWindow* window, const Inputs& inputs, int light,
   std::vector<float>& share)
 {
   const int width = inputs.hits.hits().width();
@@ -84,16 +84,16 @@ bool RayCaster::readShadow(vtkOpenGLRenderWindow* window, const Inputs& inputs, 
 }
 
 //------------------------------------------------------------------------------
-bool RayCaster::shade(vtkOpenGLRenderWindow* window, const Inputs& inputs, const Image2D& target,
+bool PrimaryShader::shade(vtkOpenGLRenderWindow* window, const Inputs& inputs, const Image2D& target,
   int shadowLight, std::vector<float>* readBack)
 {
   OffscreenState state(window, this->Framebuffer, target.width(), target.height());
   glFramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, target.name(), 0);
-  if (!state.complete("ray caster"))
+  if (!state.complete("primary image"))
   {
     return false;
   }
-  vtkShaderProgram* program = readyProgram(window, ScreenTriangle_vs, rayCasterSource(inputs.features));
+  vtkShaderProgram* program = readyProgram(window, ScreenTriangle_vs, primaryShaderSource(inputs.features));
   if (!program)
   {
     return false;

@@ -1,6 +1,6 @@
 // The Embree structure against a loop over all triangles: same triangle, same t, u, v, bit by bit.
 #include "Rendering/Core/Structures/EmbreeDevice.h"
-#include "Rendering/Core/Structures/EmbreeStructure.h"
+#include "Rendering/Core/Structures/BvhStructure.h"
 #include "StructureChecks.h"
 
 #include <gtest/gtest.h>
@@ -51,7 +51,7 @@ Snapshot placedTori(const glm::dvec3& centre)
 
 void expectEqualToBruteForce(const Snapshot& s, int rays, const char* configuration = "")
 {
-  EmbreeStructure embree{ configuration };
+  BvhStructure embree{ configuration };
   scenes::BruteForce reference;
   embree.update(s);
   reference.update(s);
@@ -71,7 +71,7 @@ void expectEqualToBruteForce(const Snapshot& s, int rays, const char* configurat
   EXPECT_GT(misses, rays / 20);
 }
 
-TEST(EmbreeStructure, EqualsBruteForceOnRandomTriangles)
+TEST(BvhStructure, EqualsBruteForceOnRandomTriangles)
 {
   Random random(7);
   Snapshot s;
@@ -80,30 +80,30 @@ TEST(EmbreeStructure, EqualsBruteForceOnRandomTriangles)
   expectEqualToBruteForce(s, 8000);
 }
 
-TEST(EmbreeStructure, EqualsBruteForceOnPlacedMeshes)
+TEST(BvhStructure, EqualsBruteForceOnPlacedMeshes)
 {
   expectEqualToBruteForce(placedTori({ 0, 0, 0 }), 6000);
 }
 
-TEST(EmbreeStructure, EqualsBruteForceFarFromTheOrigin)
+TEST(BvhStructure, EqualsBruteForceFarFromTheOrigin)
 {
   expectEqualToBruteForce(placedTori({ 148376, 1234, -223423 }), 6000);
 }
 
-TEST(EmbreeStructure, InstructionSetDoesNotShow)
+TEST(BvhStructure, InstructionSetDoesNotShow)
 {
   expectEqualToBruteForce(placedTori({ 0, 0, 0 }), 2000, "isa=sse2");
 }
 
 // From inside a closed mesh every ray must hit, those at vertices and edges too.
-TEST(EmbreeStructure, NothingLeaksOutOfAClosedMesh)
+TEST(BvhStructure, NothingLeaksOutOfAClosedMesh)
 {
   for (const glm::dvec3& centre : { glm::dvec3(0.0), glm::dvec3(148376, 1234, -223423) })
   {
     Snapshot s;
     scenes::addPart(s, scenes::sphere(200, 100), glm::translate(glm::dmat4(1.0), centre));
     s.origin = centre;
-    EmbreeStructure embree;
+    BvhStructure embree;
     embree.update(s);
     Random random(8);
     int leaks = 0;
@@ -118,12 +118,12 @@ TEST(EmbreeStructure, NothingLeaksOutOfAClosedMesh)
   }
 }
 
-TEST(EmbreeStructure, LeavesFloatingPointModesAlone)
+TEST(BvhStructure, LeavesFloatingPointModesAlone)
 {
   // Flush-to-zero would turn the smallest number's half, and unequal products, into zero.
   Snapshot s;
   scenes::addPart(s, scenes::sphere(64, 32));
-  EmbreeStructure embree;
+  BvhStructure embree;
   embree.update(s);
   embree.intersect(Ray());
   volatile double smallest = std::numeric_limits<double>::min();
@@ -143,12 +143,12 @@ std::string errorOf(const std::function<void()>& action)
   return "no error";
 }
 
-TEST(EmbreeStructure, ErrorsAreThrownWithEmbreesWords)
+TEST(BvhStructure, ErrorsAreThrownWithEmbreesWords)
 {
   EXPECT_EQ(
-    errorOf([] { EmbreeStructure embree("threads=many"); }), "Embree: no device (unknown error)");
+    errorOf([] { BvhStructure embree("threads=many"); }), "Embree: no device (unknown error)");
   // A geometry of a kind that does not exist.
-  embree::Device device("");
+  bvh::Device device("");
   const RTCGeometry none = rtcNewGeometry(device.handle(), static_cast<RTCGeometryType>(99));
   EXPECT_EQ(none, nullptr);
   const std::string error = errorOf([&] { device.check("making nothing"); });

@@ -4,7 +4,7 @@
 #pragma once
 
 #include "Rendering/Core/Structures/EmbreeDevice.h"
-#include "Rendering/Core/Structures/EmbreeSearch.h"
+#include "Rendering/Core/Structures/BvhSearch.h"
 #include "Rendering/Core/Structures/TriangleBlock.h"
 #include "Rendering/Core/Structures/WideTree.h"
 
@@ -15,7 +15,7 @@
 
 namespace hrt
 {
-namespace embree
+namespace bvh
 {
 
 // What a hierarchy is made from: a geometry in its own coordinates, or in those to which the placement
@@ -99,5 +99,5 @@ private:
   bool Complete = true; // no triangle was left out
 };
 
-} // namespace embree
+} // namespace bvh
 } // namespace hrt

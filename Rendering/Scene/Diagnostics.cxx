@@ -1,6 +1,6 @@
-// See Complaints.h.
+// See Diagnostics.h.
 
-#include "Rendering/Scene/Complaints.h"
+#include "Rendering/Scene/Diagnostics.h"
 
 #include "Rendering/Scene/GeometryCache.h"
 
@@ -50,7 +50,7 @@ std::string describeProblems(const Extraction& extraction)
 }
 
 //------------------------------------------------------------------------------
-void Complaints::addState(std::uint64_t key, const std::string& text)
+void Diagnostics::addState(std::uint64_t key, const std::string& text)
 {
   const bool news = this->Told.count({ key, text }) == 0;
   if (this->Telling.emplace(key, text).second && news)
@@ -60,7 +60,7 @@ void Complaints::addState(std::uint64_t key, const std::string& text)
 }
 
 //------------------------------------------------------------------------------
-std::string Complaints::endUpdate()
+std::string Diagnostics::endUpdate()
 {
   std::ostringstream line;
   const std::size_t named = std::min(this->News.size(), kNamed);
@@ -79,7 +79,7 @@ std::string Complaints::endUpdate()
 }
 
 //------------------------------------------------------------------------------
-void Complaints::abandonUpdate()
+void Diagnostics::abandonUpdate()
 {
   this->Telling.clear();
   this->News.clear();

@@ -3,7 +3,7 @@
 // origin may move.
 #pragma once
 
-#include "Rendering/Core/Structures/EmbreeHierarchy.h"
+#include "Rendering/Core/Structures/BvhHierarchy.h"
 #include "Rendering/Core/Structures/Grouping.h"
 
 #include <memory>
@@ -11,7 +11,7 @@
 
 namespace hrt
 {
-namespace embree
+namespace bvh
 {
 
 struct MergedHierarchy
@@ -33,5 +33,5 @@ struct MergedHierarchy
   void follow(const Grouping& grouping, Place place, std::size_t earlierCount);
 };
 
-} // namespace embree
+} // namespace bvh
 } // namespace hrt

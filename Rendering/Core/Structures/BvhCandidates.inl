@@ -1,6 +1,6 @@
 // Pairs of a ray and a triangle that the sieve has let pass for the rays of a packet, gathered
 // until there are enough of them for the exact kernel to decide eight at once. Included by
-// EmbreePackets.inl.
+// BvhPackets.inl.
 
 class Candidates
 {
