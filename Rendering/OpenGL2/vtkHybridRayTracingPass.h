@@ -251,8 +251,10 @@ public:
    * triangles of the 3x3 or 5x5 pixels around are tried, the nearest that is met wins; where none
    * is, the colour is interpolated from the pixels around. Full3x3, Full5x5: the same, but for every
    * pixel, also where its own triangle is met. What RayCasting or DirectRendering find needs none.
-   * Shading on the GPU always clamps: a warning says so when another mode is used with it. A value
-   * out of range is an error and changes nothing. Default: Clamp.
+   * Shading on the GPU always clamps: a warning says so when another mode is used with it. It is the
+   * paper's word for the repair of edges, and smooths nothing: samples a pixel are
+   * vtkRenderWindow::SetMultiSamples, for what VTK draws. A value out of range is an error and changes
+   * nothing. Default: Clamp.
    */
   void SetMultisampling(int mode);
   vtkGetMacro(Multisampling, int);
