@@ -19,9 +19,14 @@ namespace gl
 void registerCompositeMappers()
 {
 #if VTK_VERSION_NUMBER < VTK_VERSION_CHECK(9, 3, 0)
-  scene::registerCompositeMapper("vtkCompositePolyDataMapper2", [](vtkMapper* mapper) {
-    return vtkCompositePolyDataMapper2::SafeDownCast(mapper)->GetCompositeDataDisplayAttributes();
-  });
+  using Mapper = vtkCompositePolyDataMapper2;
+  scene::registerCompositeMapper("vtkCompositePolyDataMapper2",
+    { [](vtkMapper* mapper) {
+       return Mapper::SafeDownCast(mapper)->GetCompositeDataDisplayAttributes();
+     },
+      [](vtkMapper* mapper) {
+        return Mapper::SafeDownCast(mapper)->GetColorMissingArraysWithNanColor();
+      } });
 #endif
 }
 

@@ -151,15 +151,16 @@ bool DepthPrograms::draw(std::size_t part, const glm::dmat4& worldToClip)
     set("copyTexels", copies.texels);
     set("trianglesOfCopy", copies.triangles);
   }
+  const auto copiesBefore = [&set](int count) { set("copiesBefore", count); };
   if ((kind & Corners) == 0)
   {
     set("vertexToTriangle", geometry.vertexToTriangle(part));
-    geometry.draw(part, this->Throttle);
+    geometry.draw(part, this->Throttle, copiesBefore);
     return true;
   }
   set("cornerToTriangle", geometry.cornerToTriangle(part));
   set("part", static_cast<int>(part));
-  geometry.drawCorners(part, this->Throttle);
+  geometry.drawCorners(part, this->Throttle, copiesBefore);
   return true;
 }
 

@@ -29,25 +29,24 @@ public:
   DrawThrottle(const DrawThrottle&) = delete;
   DrawThrottle& operator=(const DrawThrottle&) = delete;
 
-  // Calls draw(first, count) once or in pieces, which together are all triangles in their order.
+  // Calls draw(first, count) once or in pieces, which together are all of so many meshes in their order.
   template <class Draw>
-  void draw(std::size_t triangles, Draw draw)
+  void draw(std::size_t meshes, std::size_t trianglesOfMesh, Draw draw)
   {
     std::size_t first = 0;
-    while (first < triangles)
+    while (first < meshes)
     {
-      const std::size_t count =
-        this->Active ? std::min(this->Room, triangles - first) : triangles - first;
+      const std::size_t fit =
+        std::max<std::size_t>(this->Room / std::max<std::size_t>(trianglesOfMesh, 1), 1);
+      const std::size_t count = this->Active ? std::min(fit, meshes - first) : meshes - first;
       draw(first, count);
-      this->drawn(count);
+      this->drawn(count * trianglesOfMesh);
       first += count;
     }
   }
 
-  // Takes notice of triangles that were drawn at once.
-  void drawn(std::size_t triangles);
-
 private:
+  void drawn(std::size_t triangles);
   void finishPiece();
 
   bool Active;

@@ -382,7 +382,8 @@ void GeometryBuffers::bindForDrawing(GLuint program) const
 }
 
 //------------------------------------------------------------------------------
-void GeometryBuffers::draw(std::size_t part, DrawThrottle& throttle) const
+void GeometryBuffers::draw(
+  std::size_t part, DrawThrottle& throttle, const std::function<void(int)>& copiesBefore) const
 {
   const Slot& slot = this->Slots[part];
   const auto placeOf = [&](std::size_t triangle) {
@@ -390,15 +391,17 @@ void GeometryBuffers::draw(std::size_t part, DrawThrottle& throttle) const
   };
   if (slot.copiesVersion == 0)
   {
-    throttle.draw(slot.triangles, [&](std::size_t first, std::size_t count) {
+    throttle.draw(slot.triangles, 1, [&](std::size_t first, std::size_t count) {
       glDrawElements(
         GL_TRIANGLES, static_cast<GLsizei>(3 * count), GL_UNSIGNED_INT, placeOf(first));
     });
     return;
   }
-  glDrawElementsInstanced(GL_TRIANGLES, static_cast<GLsizei>(3 * slot.triangles), GL_UNSIGNED_INT,
-    placeOf(0), static_cast<GLsizei>(slot.copies));
-  throttle.drawn(slot.triangles * slot.copies);
+  throttle.draw(slot.copies, slot.triangles, [&](std::size_t first, std::size_t count) {
+    copiesBefore(static_cast<int>(first));
+    glDrawElementsInstanced(GL_TRIANGLES, static_cast<GLsizei>(3 * slot.triangles),
+      GL_UNSIGNED_INT, placeOf(0), static_cast<GLsizei>(count));
+  });
 }
 
 //------------------------------------------------------------------------------
@@ -415,20 +418,23 @@ void GeometryBuffers::bindForFetching() const
 }
 
 //------------------------------------------------------------------------------
-void GeometryBuffers::drawCorners(std::size_t part, DrawThrottle& throttle) const
+void GeometryBuffers::drawCorners(
+  std::size_t part, DrawThrottle& throttle, const std::function<void(int)>& copiesBefore) const
 {
   const Slot& slot = this->Slots[part];
   if (slot.copiesVersion == 0)
   {
-    throttle.draw(slot.triangles, [&](std::size_t first, std::size_t count) {
+    throttle.draw(slot.triangles, 1, [&](std::size_t first, std::size_t count) {
       glDrawArrays(GL_TRIANGLES, static_cast<GLint>(3 * (slot.place + first)),
         static_cast<GLsizei>(3 * count));
     });
     return;
   }
-  glDrawArraysInstanced(GL_TRIANGLES, static_cast<GLint>(3 * slot.place),
-    static_cast<GLsizei>(3 * slot.triangles), static_cast<GLsizei>(slot.copies));
-  throttle.drawn(slot.triangles * slot.copies);
+  throttle.draw(slot.copies, slot.triangles, [&](std::size_t first, std::size_t count) {
+    copiesBefore(static_cast<int>(first));
+    glDrawArraysInstanced(GL_TRIANGLES, static_cast<GLint>(3 * slot.place),
+      static_cast<GLsizei>(3 * slot.triangles), static_cast<GLsizei>(count));
+  });
 }
 
 //------------------------------------------------------------------------------

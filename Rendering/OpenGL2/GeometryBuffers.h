@@ -12,6 +12,7 @@
 #include "Rendering/Core/Snapshot.h"
 
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -39,9 +40,11 @@ public:
 
   // Feeds the program's attribute `position`; draw() then rasterises the triangles of one part, of
   // which a last corner's gl_VertexID is vertexToTriangle() less than the triangle's number. Of a part
-  // with copies each is an instance, and the number that of the first copy.
+  // with copies each is an instance, and the number that of the first copy: before each call that draws
+  // some of them, `copiesBefore` is told how many others were.
   void bindForDrawing(GLuint program) const;
-  void draw(std::size_t part, DrawThrottle& throttle) const;
+  void draw(std::size_t part, DrawThrottle& throttle,
+    const std::function<void(int)>& copiesBefore) const;
   int vertexToTriangle(std::size_t part) const;
 
   // Where the rows of a part's copies lie in the table of positions, and how many texels each takes:
@@ -55,7 +58,8 @@ public:
   // The same without shared vertices, for a program that fetches them by itself from the tables.
   // A corner's gl_VertexID / 3 is cornerToTriangle() less than the triangle's number.
   void bindForFetching() const;
-  void drawCorners(std::size_t part, DrawThrottle& throttle) const;
+  void drawCorners(std::size_t part, DrawThrottle& throttle,
+    const std::function<void(int)>& copiesBefore) const;
   int cornerToTriangle(std::size_t part) const;
 
   // Binds the tables from the given unit on, in the order of the PrimaryShader's samplers; returns the

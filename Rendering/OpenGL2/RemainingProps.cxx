@@ -6,6 +6,7 @@
 #include "vtkActor.h"
 #include "vtkDualDepthPeelingPass.h"
 #include "vtkFrameBufferObjectBase.h"
+#include "vtkHiddenLineRemovalPass.h"
 #include "vtkOpaquePass.h"
 #include "vtkOpenGLFXAAFilter.h"
 #include "vtkOpenGLRenderer.h"
@@ -80,8 +81,17 @@ int RemainingProps::draw(const vtkRenderState* state,
   rest.SetPropArrayAndCount(left.data(), static_cast<int>(left.size()));
 
   int drawn = 0;
-  this->Opaque->Render(&rest);
-  drawn += this->Opaque->GetNumberOfRenderedProps();
+  // As vtkOpenGLRenderer decides it. Wireframes are hidden by each other's faces then, and by what is
+  // traced anyway.
+  const bool hidesLines = renderer->GetUseHiddenLineRemoval() &&
+    vtkHiddenLineRemovalPass::WireframePropsExist(left.data(), static_cast<int>(left.size()));
+  vtkRenderPass* opaque = this->Opaque;
+  if (hidesLines)
+  {
+    opaque = this->HiddenLines;
+  }
+  opaque->Render(&rest);
+  drawn += opaque->GetNumberOfRenderedProps();
   const bool translucent = anyTranslucent(rest);
   // As vtkOpenGLRenderer decides it: then the peeling pass draws the volumes too.
   const bool peelsVolumes = translucent && renderer->GetUseDepthPeeling() &&
@@ -214,6 +224,7 @@ void RemainingProps::releaseGraphicsResources(vtkWindow* window)
 {
   this->forgetTranslucentPasses(window);
   this->Opaque->ReleaseGraphicsResources(window);
+  this->HiddenLines->ReleaseGraphicsResources(window);
   this->Translucent->ReleaseGraphicsResources(window);
   this->Volumetric->ReleaseGraphicsResources(window);
   this->Overlay->ReleaseGraphicsResources(window);

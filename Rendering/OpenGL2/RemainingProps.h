@@ -12,6 +12,7 @@
 #include <vector>
 
 class vtkActor;
+class vtkHiddenLineRemovalPass;
 class vtkOpaquePass;
 class vtkOpenGLFXAAFilter;
 class vtkOpenGLState;
@@ -55,6 +56,7 @@ private:
   void forgetTranslucentPasses(vtkWindow* window);
 
   vtkNew<vtkOpaquePass> Opaque;
+  vtkNew<vtkHiddenLineRemovalPass> HiddenLines; // in its place where the renderer asks for it
   vtkNew<vtkTranslucentPass> Translucent;
   vtkNew<vtkVolumetricPass> Volumetric;
   vtkNew<vtkOverlayPass> Overlay;

@@ -368,6 +368,23 @@ def test_glass_actor_with_opacity_is_drawn_once(render):
     assert (np.abs(picture - picture[0, 0]) <= 1).all()
 
 
+def test_hidden_lines_are_removed(render):
+    """A wireframe whose far lines its near faces hide, before a traced plane."""
+    wires = ball(Representation=1, Color=(0.9, 0.3, 0.2), Lighting=False)
+    renderer = scenes.renderer_of(wires, scenes.actor_of(scenes.plane(2.0, -0.6)))
+    scenes.look(renderer, (0.6, 1.2, 4))
+    counts = []
+    for hidden in (False, True):
+        renderer.SetUseHiddenLineRemoval(hidden)
+        for rt in (None, vtkHybridRayTracingPass()):
+            renderer.SetPass(rt)
+            picture = render(renderer).astype(int)
+            counts.append(np.count_nonzero(picture[..., 0] > picture[..., 1] + 60))
+    assert counts[1] == pytest.approx(counts[0], rel=0.01)
+    assert counts[3] == pytest.approx(counts[2], rel=0.01)
+    assert counts[3] < 0.8 * counts[1]
+
+
 def test_depth_buffer_is_true_gl_depth(render):
     """What VTK reads from the window (for picking, widgets, composites) is what its own picture has, or a
     little behind it, by what rounding explains: what VTK draws in the same place must be seen."""

@@ -3,17 +3,23 @@
 uniform int firstCopy;        // texel of the first one's rows
 uniform int copyTexels;
 uniform int trianglesOfCopy;
+uniform int copiesBefore;     // of the part, drawn by the calls before
+
+int copyNumber()
+{
+  return copiesBefore + gl_InstanceID;
+}
 
 vec4 placed(vec4 position)
 {
-  int at = firstCopy + gl_InstanceID * copyTexels;
+  int at = firstCopy + copyNumber() * copyTexels;
   return vec4(dot(texelFetch(positions, at), position),
     dot(texelFetch(positions, at + 1), position), dot(texelFetch(positions, at + 2), position), 1.0);
 }
 
 int trianglesBefore()
 {
-  return gl_InstanceID * trianglesOfCopy;
+  return copyNumber() * trianglesOfCopy;
 }
 #else
 vec4 placed(vec4 position)

@@ -25,11 +25,18 @@ AdapterKind compositeKind();
 AdapterKind dataSetKind();
 AdapterKind polyDataKind();
 
-// A composite mapper's class by name, and where it keeps what is said of single blocks. Null
-// attributes are allowed. Registering a name again replaces it.
-using BlockAttributes = vtkCompositeDataDisplayAttributes* (*)(vtkMapper*);
+// How composite mappers of a class are asked.
+struct CompositeMapperClass
+{
+  // Where it keeps what is said of single blocks; may be null.
+  vtkCompositeDataDisplayAttributes* (*attributes)(vtkMapper*);
+  // Whether blocks that lack the array by which it colours have the lookup table's colour for NaN.
+  bool (*missingArraysAreNaN)(vtkMapper*);
+};
+
+// By the class' name. Registering it again replaces it.
 VTKHYBRIDRENDERINGSCENE_EXPORT void registerCompositeMapper(
-  const char* className, BlockAttributes attributes);
+  const char* className, const CompositeMapperClass& how);
 
 } // namespace scene
 } // namespace hrt

@@ -3,10 +3,12 @@
 #include "Rendering/Scene/Adapters/AdapterRegistry.h"
 
 #include "vtkActor.h"
+#include "vtkColorTransferFunction.h"
 #include "vtkCompositeDataDisplayAttributes.h"
 #include "vtkCompositePolyDataMapper.h"
 #include "vtkDataObjectTree.h"
 #include "vtkDataObjectTreeIterator.h"
+#include "vtkLookupTable.h"
 #include "vtkNew.h"
 #include "vtkPolyData.h"
 #include "vtkPolyDataMapper.h"
@@ -42,11 +44,23 @@ vtkCompositeDataDisplayAttributes* attributesOfCoreMapper(vtkMapper* mapper)
 }
 
 //------------------------------------------------------------------------------
-using Registry = std::map<std::string, BlockAttributes>;
+bool missingArraysAreNaNInCoreMapper(vtkMapper* mapper)
+{
+#if HRT_BLOCK_SCALARS
+  return vtkCompositePolyDataMapper::SafeDownCast(mapper)->GetColorMissingArraysWithNanColor();
+#else
+  static_cast<void>(mapper);
+  return false;
+#endif
+}
+
+//------------------------------------------------------------------------------
+using Registry = std::map<std::string, CompositeMapperClass>;
 
 Registry& registry()
 {
-  static Registry all = { { "vtkCompositePolyDataMapper", &attributesOfCoreMapper } };
+  static Registry all = { { "vtkCompositePolyDataMapper",
+    { &attributesOfCoreMapper, &missingArraysAreNaNInCoreMapper } } };
   return all;
 }
 
@@ -93,6 +107,37 @@ void apply(vtkCompositeDataDisplayAttributes* attributes, vtkDataObject* block, 
     state.overrides.color = true;
     state.overrides.colorValue = glm::vec3(color[0], color[1], color[2]);
   }
+}
+
+//------------------------------------------------------------------------------
+// False where the table has no colour for it.
+bool colorOfNaN(vtkScalarsToColors* table, glm::vec3& color)
+{
+  double rgb[4] = { 0.0, 0.0, 0.0, 1.0 };
+  if (auto* const colors = vtkLookupTable::SafeDownCast(table))
+  {
+    colors->GetNanColor(rgb);
+  }
+  else if (auto* const function = vtkColorTransferFunction::SafeDownCast(table))
+  {
+    function->GetNanColor(rgb);
+  }
+  else
+  {
+    return false;
+  }
+  color = glm::vec3(rgb[0], rgb[1], rgb[2]);
+  return true;
+}
+
+//------------------------------------------------------------------------------
+// Whether a block's own mapper finds nothing to colour it by, though it should.
+bool lacksScalars(vtkMapper* own, vtkDataSet* block)
+{
+  int attachment = 0;
+  return own->GetScalarVisibility() &&
+    !vtkAbstractMapper::GetAbstractScalars(block, own->GetScalarMode(), own->GetArrayAccessMode(),
+      own->GetArrayId(), own->GetArrayName(), attachment);
 }
 
 #if HRT_BLOCK_SCALARS
@@ -169,7 +214,9 @@ public:
       reading.problem = "the mapper has no input; nothing is drawn";
       return reading;
     }
-    vtkCompositeDataDisplayAttributes* const attributes = entryOf(mapper)->second(mapper);
+    const CompositeMapperClass& how = entryOf(mapper)->second;
+    vtkCompositeDataDisplayAttributes* const attributes = how.attributes(mapper);
+    this->MissingArraysAreNaN = how.missingArraysAreNaN(mapper);
     this->followSettings(mapper, attributes);
     std::int64_t flatIndex = 0;
     this->visit(data, attributes, BlockState(), mapper, flatIndex, reading.pieces);
@@ -221,6 +268,11 @@ private:
       piece.data = mesh;
       piece.colors = this->mapperOf(own, mapper, attributes, block);
       piece.overrides = state.overrides;
+      if (this->MissingArraysAreNaN && lacksScalars(piece.colors, mesh) &&
+        colorOfNaN(piece.colors->GetLookupTable(), piece.overrides.colorValue))
+      {
+        piece.overrides.color = true; // before the block's own, as VTK has it
+      }
       piece.key = static_cast<std::uint64_t>(own) + 1;
       piece.block = own;
       pieces.push_back(std::move(piece));
@@ -246,6 +298,7 @@ private:
     return own;
   }
 
+  bool MissingArraysAreNaN = false;
   std::pair<vtkMTimeType, vtkMTimeType> Settings;
   std::map<std::int64_t, vtkSmartPointer<vtkMapper>> Mappers; // by flat index
 };
@@ -253,9 +306,9 @@ private:
 } // namespace
 
 //------------------------------------------------------------------------------
-void registerCompositeMapper(const char* className, BlockAttributes attributes)
+void registerCompositeMapper(const char* className, const CompositeMapperClass& how)
 {
-  registry()[className] = attributes;
+  registry()[className] = how;
 }
 
 //------------------------------------------------------------------------------

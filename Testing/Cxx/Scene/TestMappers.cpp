@@ -5,11 +5,13 @@
 
 #include "vtkBitArray.h"
 #include "vtkCellData.h"
+#include "vtkColorTransferFunction.h"
 #include "vtkCompositeDataDisplayAttributes.h"
 #include "vtkDataSetMapper.h"
 #include "vtkDoubleArray.h"
 #include "vtkGlyph3DMapper.h"
 #include "vtkImageData.h"
+#include "vtkLookupTable.h"
 #include "vtkMultiBlockDataSet.h"
 #include "vtkPlane.h"
 #include "vtkPointData.h"
@@ -231,6 +233,38 @@ TEST_F(Composite, BlocksInheritColoursWhichGoBeforeScalars)
   EXPECT_EQ(s.parts[1].material.front.diffuseColor, glm::vec3(1, 0, 0));
   EXPECT_EQ(s.parts[1].geometry->colorSource, hrt::ColorSource::Property);
   EXPECT_EQ(s.parts[2].material.back.ambientColor, glm::vec3(0, 1, 0));
+}
+
+TEST_F(Composite, BlocksWithoutTheArrayMayHaveTheColourOfNaN)
+{
+  vtkNew<vtkDoubleArray> values;
+  values->SetName("values");
+  values->SetNumberOfTuples(4);
+  values->Fill(1.0);
+  this->squares[1]->GetPointData()->AddArray(values);
+  vtkNew<vtkLookupTable> table;
+  table->SetNanColor(0.25, 0.5, 0.75, 1.0);
+  this->mapper->SetLookupTable(table);
+  this->mapper->SetScalarModeToUsePointFieldData();
+  this->mapper->SelectColorArray("values");
+  const double red[3] = { 1, 0, 0 };
+  this->attributes->SetBlockColor(this->squares[2], red);
+  const auto colorOf = [&](std::size_t part) {
+    return this->update().parts.at(part).material.front.diffuseColor;
+  };
+  EXPECT_EQ(colorOf(0), glm::vec3(1, 1, 1));
+  EXPECT_EQ(colorOf(2), glm::vec3(1, 0, 0));
+  this->mapper->ColorMissingArraysWithNanColorOn();
+  EXPECT_EQ(colorOf(0), glm::vec3(0.25f, 0.5f, 0.75f));
+  EXPECT_EQ(this->update().parts[1].geometry->colorSource, hrt::ColorSource::Corner);
+  EXPECT_EQ(colorOf(2), glm::vec3(0.25f, 0.5f, 0.75f)) << "before the block's own colour";
+  vtkNew<vtkColorTransferFunction> function;
+  function->AddRGBPoint(0.0, 1.0, 0.0, 0.0);
+  function->SetNanColor(0.5, 0.5, 0.25);
+  this->mapper->SetLookupTable(function);
+  EXPECT_EQ(colorOf(0), glm::vec3(0.5f, 0.5f, 0.25f));
+  this->mapper->ScalarVisibilityOff();
+  EXPECT_EQ(colorOf(0), glm::vec3(1, 1, 1));
 }
 
 TEST_F(Composite, BlocksOfOpacityZeroAreNotThere)
