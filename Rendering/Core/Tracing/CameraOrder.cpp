@@ -20,6 +20,7 @@ CameraOrder::CameraOrder(const Snapshot& snapshot, const Surfaces& surfaces)
       const DepthOffset& offset = part.material.depthOffset;
       first = first ? first : &offset;
       bySlope = bySlope || offset.slope != 0.0f;
+      this->AnyOffset = this->AnyOffset || offset.any();
       this->OffsetsDiffer = this->OffsetsDiffer || !(offset == *first);
     }
   }
@@ -64,6 +65,10 @@ bool CameraOrder::hides(const Ray& ray, const Hit& one, const Hit& other) const
 double CameraOrder::clipDepth(const Ray& ray, const Hit& hit) const
 {
   const double depth = this->Planes.depth(ray.origin + hit.t * ray.direction);
+  if (!this->AnyOffset)
+  {
+    return depth;
+  }
   const DepthOffset& offset = this->materialOf(hit).depthOffset;
   if (!offset.any())
   {

@@ -30,6 +30,7 @@ private:
   const Snapshot& Scene;
   const Surfaces& Points;
   ClipPlanes Planes;
+  bool AnyOffset = false;
   bool OffsetsDiffer = false;
   glm::dmat4 PlaneToClip{ 1.0 }; // of a plane in coordinates relative to the scene's origin, as a row
 };

@@ -41,7 +41,7 @@ void FirstHits::gather(
 }
 
 FirstHits::Outcome FirstHits::find(const std::uint32_t* ids, std::uint32_t pixel, const Ray& ray,
-  Hit& hit, MultisamplingCounts& counts) const
+  Hit& hit, Surfaces::Located& where, MultisamplingCounts& counts) const
 {
   const std::uint32_t own = ids[pixel];
   const bool named = this->isTriangle(own);
@@ -52,7 +52,7 @@ FirstHits::Outcome FirstHits::find(const std::uint32_t* ids, std::uint32_t pixel
   }
   if (this->Mode == Multisampling::Clamp)
   {
-    return this->Points.primaryHit(own - 1, ray, hit) ? Outcome::Found : Outcome::Nothing;
+    return this->Points.primaryHit(own - 1, ray, hit, where) ? Outcome::Found : Outcome::Nothing;
   }
   const ShearedRay exact(ray.origin, ray.direction);
   const bool met = named && this->Points.exactHit(own - 1, exact, ray.tMaximum, hit);

@@ -27,9 +27,10 @@ public:
     Missed   // it shows some triangle, but the ray meets none of those that were tried
   };
 
-  // `ids`: of the whole picture; `ray`: the pixel's own. An id out of range counts as none.
+  // `ids`: of the whole picture; `ray`: the pixel's own. An id out of range counts as none. `where`: perhaps
+  // that of the hit's triangle afterwards.
   Outcome find(const std::uint32_t* ids, std::uint32_t pixel, const Ray& ray, Hit& hit,
-    MultisamplingCounts& counts) const;
+    Surfaces::Located& where, MultisamplingCounts& counts) const;
 
   // The distinct triangles that the pixel may show, its own first. Ids out of range are left out.
   struct Candidates

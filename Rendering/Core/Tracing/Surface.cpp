@@ -144,38 +144,42 @@ Surfaces::Placement Surfaces::placement(
   return { toScene, glm::transpose(glm::inverse(linear)), glm::determinant(linear) < 0.0 };
 }
 
-const Surfaces::Placement& Surfaces::placementOf(
-  std::size_t part, TriangleId id, Placement& scratch) const
+void Surfaces::Located::locate(const Surfaces& surfaces, TriangleId id)
 {
-  const Part& of = this->Scene.parts[part];
-  if (!of.copies)
+  if (id == this->Id)
   {
-    return this->Placements[part];
+    return;
   }
-  scratch = placement(of, this->Scene.origin, of.copyOf(id));
-  return scratch;
+  this->Id = id;
+  this->PartIndex = surfaces.Scene.partOf(id);
+  const Part& part = surfaces.Scene.parts[this->PartIndex];
+  this->Place = &surfaces.Placements[this->PartIndex];
+  if (part.copies)
+  {
+    this->OfCopy = Surfaces::placement(part, surfaces.Scene.origin, part.copyOf(id));
+    this->Place = &this->OfCopy;
+  }
+  this->Triangle = part.indexOf(id);
+  this->At = sceneCorners(*part.geometry, this->Place->toScene, this->Triangle);
 }
 
 bool Surfaces::primaryHit(TriangleId id, const Ray& ray, Hit& hit) const
 {
-  const std::size_t index = this->Scene.partOf(id);
-  const Part& part = this->Scene.parts[index];
-  Placement scratch;
-  return hitPrimary(sceneCorners(*part.geometry, this->placementOf(index, id, scratch).toScene,
-                      part.indexOf(id)),
-    id, ray, hit);
+  Located where;
+  return this->primaryHit(id, ray, hit, where);
+}
+
+bool Surfaces::primaryHit(TriangleId id, const Ray& ray, Hit& hit, Located& where) const
+{
+  where.locate(*this, id);
+  return hitPrimary(where.corners(), id, ray, hit);
 }
 
 bool Surfaces::exactHit(
   TriangleId id, const ShearedRay& ray, double tMaximum, Hit& hit) const
 {
-  const std::size_t index = this->Scene.partOf(id);
-  const Part& part = this->Scene.parts[index];
-  Placement scratch;
   TriangleHit found;
-  if (!ray.hitsTriangle(sceneCorners(*part.geometry,
-                          this->placementOf(index, id, scratch).toScene, part.indexOf(id)),
-        tMaximum, found))
+  if (!ray.hitsTriangle(Located(*this, id).corners(), tMaximum, found))
   {
     return false;
   }
@@ -185,31 +189,28 @@ bool Surfaces::exactHit(
 
 glm::dvec3 Surfaces::positionOf(const Hit& hit) const
 {
-  const std::size_t index = this->Scene.partOf(hit.triangle);
-  const Part& part = this->Scene.parts[index];
-  Placement scratch;
-  const Corners corners = sceneCorners(*part.geometry,
-    this->placementOf(index, hit.triangle, scratch).toScene, part.indexOf(hit.triangle));
+  const Located where(*this, hit.triangle);
+  const Corners& corners = where.corners();
   return corners.a + hit.u * (corners.b - corners.a) + hit.v * (corners.c - corners.a);
 }
 
 SurfacePoint Surfaces::at(const Hit& hit, const glm::dvec3& direction) const
 {
   shading::HrtTerms terms;
-  return this->evaluate(hit, direction, terms);
+  return this->evaluate(hit, direction, Located(*this, hit.triangle), terms);
 }
 
 SurfacePoint Surfaces::evaluate(
-  const Hit& hit, const glm::dvec3& direction, shading::HrtTerms& terms) const
+  const Hit& hit, const glm::dvec3& direction, const Located& where,
+  shading::HrtTerms& terms) const
 {
   SurfacePoint point;
   point.triangle = hit.triangle;
-  point.part = this->Scene.partOf(hit.triangle);
+  point.part = where.part();
   const Part& part = this->Scene.parts[point.part];
-  Placement scratch;
-  const Placement& placement = this->placementOf(point.part, hit.triangle, scratch);
-  const std::size_t triangle = part.indexOf(hit.triangle);
-  const Corners corners = sceneCorners(*part.geometry, placement.toScene, triangle);
+  const Placement& placement = where.placement();
+  const std::size_t triangle = where.triangle();
+  const Corners& corners = where.corners();
 
   const glm::dvec3 e1 = corners.b - corners.a, e2 = corners.c - corners.a;
   point.material = &part.material;
@@ -230,13 +231,16 @@ SurfacePoint Surfaces::evaluate(
   const glm::dvec3 smooth =
     placement.normalsToScene * cornerNormal(*part.geometry, triangle, hit);
   point.normal = shading64::hrtSmoothNormal(smooth, sides.geometricNormal, point.frontSide);
-  point.opticalNormal = shading64::hrtSmoothNormal(smooth, sides.geometricNormal, point.outside);
+  point.opticalNormal = point.outside == point.frontSide
+    ? point.normal
+    : shading64::hrtSmoothNormal(smooth, sides.geometricNormal, point.outside);
 
   shading::SurfaceColors colors(part, triangle, part.copyOf(hit.triangle));
   const float u = static_cast<float>(hit.u), v = static_cast<float>(hit.v);
   terms = colors.hrtTermsAt(u, v, point.frontSide);
   const glm::vec4 texture = colors.textureColor(u, v, point.frontSide);
   point.colors = shading::hrtSurface(terms);
+  point.edgeShare = 0.0f;
   point.textureColor = glm::vec3(texture);
   point.diffuseColor = terms.diffuseColor * point.textureColor;
   point.opacity = opacityOf(part, terms.opacity, texture.a);
@@ -244,28 +248,30 @@ SurfacePoint Surfaces::evaluate(
 }
 
 SurfacePoint Surfaces::seenAtPixel(
-  const Hit& hit, const glm::dvec3& direction, const glm::dvec2& centre) const
+  const Hit& hit, const glm::dvec3& direction, std::uint32_t pixel, Located& where) const
 {
-  const std::size_t index = this->Scene.partOf(hit.triangle);
-  const Part& part = this->Scene.parts[index];
+  where.locate(*this, hit.triangle);
+  const Part& part = this->Scene.parts[where.part()];
+  shading::HrtTerms terms;
   if (!part.showsEdges())
   {
-    return this->at(hit, direction);
+    return this->evaluate(hit, direction, where, terms);
   }
-  Placement scratch;
-  const glm::dmat4 toWindow = translation({ -centre, 0.0 }) * this->ToWindow *
-    this->placementOf(index, hit.triangle, scratch).toScene;
+  const auto width = static_cast<std::uint32_t>(this->Scene.camera.width);
+  const glm::dvec2 centre(pixel % width + 0.5, pixel / width + 0.5);
+  const glm::dmat4 toWindow =
+    translation({ -centre, 0.0 }) * this->ToWindow * where.placement().toScene;
   const Material& material = part.material;
   shading64::EdgeLookup edges(*part.geometry, toWindow);
-  const auto local = static_cast<TriangleId>(part.indexOf(hit.triangle));
+  const auto local = static_cast<TriangleId>(where.triangle());
   const auto seen = edges.hrtEdgeHit(static_cast<int>(local), { hit.u, hit.v },
     material.edges.width, material.cullFront || material.cullBack);
   Hit shown = hit;
   shown.triangle = hit.triangle - local + static_cast<TriangleId>(seen.triangle);
   shown.u = seen.uv.x;
   shown.v = seen.uv.y;
-  shading::HrtTerms terms;
-  SurfacePoint point = this->evaluate(shown, direction, terms);
+  where.locate(*this, shown.triangle);
+  SurfacePoint point = this->evaluate(shown, direction, where, terms);
   addEdges(edges, material.edges, seen.nearest, this->ViewAxes, terms, point);
   return point;
 }
@@ -282,7 +288,8 @@ SurfacePoint Surfaces::seenFrom(
   const Hit& hit, const glm::dvec3& direction, const Way& way) const
 {
   shading::HrtTerms terms;
-  SurfacePoint point = this->evaluate(hit, direction, terms);
+  const Located where(*this, hit.triangle);
+  SurfacePoint point = this->evaluate(hit, direction, where, terms);
   const Part& part = this->Scene.parts[point.part];
   if (!part.showsEdges())
   {
@@ -299,13 +306,12 @@ SurfacePoint Surfaces::seenFrom(
   const double pixel = this->PixelSize + this->PixelGrowth * way.depth;
   const glm::dmat4 across = glm::transpose(glm::dmat4(glm::dvec4(x, 0.0), glm::dvec4(y, 0.0),
     glm::dvec4(0.0), glm::dvec4(growth * d, pixel)));
-  Placement scratch;
-  const glm::dmat4 toWindow = across * translation(-point.position) *
-    this->placementOf(point.part, hit.triangle, scratch).toScene;
+  const glm::dmat4 toWindow =
+    across * translation(-point.position) * where.placement().toScene;
   shading64::EdgeLookup edges(*part.geometry, toWindow);
   const EdgeStyle& style = part.material.edges;
   addEdges(edges, style,
-    edges.nearestOf(static_cast<int>(part.indexOf(hit.triangle)), style.width),
+    edges.nearestOf(static_cast<int>(where.triangle()), style.width),
     glm::dmat3(x, y, -d), terms, point);
   return point;
 }

@@ -14,37 +14,39 @@
 namespace hrt
 {
 
+// Made by Surfaces, which fills in all of it: one is made for each hit of each ray, and zeros first would
+// be a good part of the cost.
 struct SurfacePoint
 {
-  TriangleId triangle = kNoTriangle;
-  std::size_t part = 0;
-  const Material* material = nullptr;
+  TriangleId triangle;
+  std::size_t part;
+  const Material* material;
 
-  glm::dvec3 position{ 0.0 };        // relative to Snapshot::origin, on the triangle
-  glm::dvec3 geometricNormal{ 0.0 }; // unit, towards the viewer
-  glm::dvec3 normal{ 0.0 };          // for shading: unit, of the viewer's side as VTK turns it
+  glm::dvec3 position;        // relative to Snapshot::origin, on the triangle
+  glm::dvec3 geometricNormal; // unit, towards the viewer
+  glm::dvec3 normal;          // for shading: unit, of the viewer's side as VTK turns it
   // The same, but turned by the body's outside: no matrix turns the optics of a smooth mesh over.
-  glm::dvec3 opticalNormal{ 0.0 };
+  glm::dvec3 opticalNormal;
   // By the corners' winding in the world, as gl_FrontFacing; a mirroring matrix swaps the sides.
-  bool frontSide = true;
+  bool frontSide;
   // By the corners' winding in the part's own coordinates: the side that a closed mesh calls its
   // outside, whatever the matrix. Decides whether a ray enters or leaves glass.
-  bool outside = true;
+  bool outside;
 
-  shading::HrtSurface colors{};
-  float edgeShare = 0.0f; // of the edges' colour, which is in `colors` already
-  glm::vec3 textureColor{ 1.0f }; // multiplies what is shaded
-  glm::vec3 diffuseColor{ 1.0f }; // without its coefficient, textured: the tint of glass
-  float opacity = 1.0f;           // 0 in a hole
+  shading::HrtSurface colors;
+  float edgeShare; // of the edges' colour, which is in `colors` already
+  glm::vec3 textureColor; // multiplies what is shaded
+  glm::vec3 diffuseColor; // without its coefficient, textured: the tint of glass
+  float opacity;           // 0 in a hole
 
   // Where rays that leave it begin, but for `positionError`: the position, or next to it where that lies
   // on an edge of the triangle. See Surface.cpp.
-  glm::dvec3 start{ 0.0 };
-  glm::dvec3 arrival{ 0.0 }; // the direction that it is seen along
+  glm::dvec3 start;
+  glm::dvec3 arrival; // the direction that it is seen along
   // How far rounding may have put `position` off the triangle, generously.
-  double positionError = 0.0;
+  double positionError;
   // No surface in one place with it is farther away: along the normal.
-  double twinReach = 0.0;
+  double twinReach;
 };
 
 // How far a ray has come from the camera. Lengths count along the camera's axis, as depths in the window:
@@ -63,9 +65,13 @@ class Surfaces
 public:
   explicit Surfaces(const Snapshot& snapshot);
 
+  // A triangle with its corners in the scene. Kept, it need not be gathered again.
+  class Located;
+
   // The ray against the plane of a triangle that the rasteriser found, in double, the barycentrics
   // moved into the triangle. False when the plane is seen edge-on or lies behind the ray.
   bool primaryHit(TriangleId id, const Ray& ray, Hit& hit) const;
+  bool primaryHit(TriangleId id, const Ray& ray, Hit& hit, Located& where) const;
 
   // The exact kernel's answer for one triangle: a hit within the triangle, 0 < t < tMaximum.
   bool exactHit(TriangleId id, const ShearedRay& ray, double tMaximum, Hit& hit) const;
@@ -79,10 +85,11 @@ public:
   // Which of them lie in one place.
   const Coincidence& coincidence() const { return this->Twins; }
 
-  // The same with the edges that the surface shows: at the centre of a pixel of the camera's, counted in
-  // pixels from the lower left, where another triangle of the surface may be seen ...
+  // The same with the edges that the surface shows: at the centre of a pixel of the camera's, which are
+  // numbered row by row from the lower left, where another triangle of the surface may be seen ...
+  // `where`: perhaps that of the hit's triangle.
   SurfacePoint seenAtPixel(
-    const Hit& hit, const glm::dvec3& direction, const glm::dvec2& centre) const;
+    const Hit& hit, const glm::dvec3& direction, std::uint32_t pixel, Located& where) const;
   // ... or by a ray that has come some way from the camera, over mirrors and through glass: edges are as
   // wide as they were in the window if that way were straight.
   SurfacePoint seenFrom(const Hit& hit, const glm::dvec3& direction, const Way& way) const;
@@ -101,11 +108,9 @@ private:
   };
 
   static Placement placement(const Part& part, const glm::dvec3& origin, std::size_t copy);
-  // Of the copy that the triangle belongs to; `scratch` holds it where there is no table.
-  const Placement& placementOf(std::size_t part, TriangleId id, Placement& scratch) const;
   // at(), with the terms that the colours are made from.
-  SurfacePoint evaluate(
-    const Hit& hit, const glm::dvec3& direction, shading::HrtTerms& terms) const;
+  SurfacePoint evaluate(const Hit& hit, const glm::dvec3& direction, const Located& where,
+    shading::HrtTerms& terms) const;
 
   const Snapshot& Scene;
   std::vector<Placement> Placements; // one a part, of its first copy
@@ -118,7 +123,31 @@ private:
   glm::dvec3 Axis{ 0.0 }; // unit; zero where all rays are parallel
 };
 
-// The same for a single pixel, without a table.
+class Surfaces::Located
+{
+public:
+  Located() = default;
+  Located(const Surfaces& surfaces, TriangleId id) { this->locate(surfaces, id); }
+  Located(const Located&) = delete;
+  Located& operator=(const Located&) = delete;
+
+  // Does nothing where it is that triangle already.
+  void locate(const Surfaces& surfaces, TriangleId id);
+
+  std::size_t part() const { return this->PartIndex; }
+  std::size_t triangle() const { return this->Triangle; } // in its part
+  const Corners& corners() const { return this->At; }
+  const Placement& placement() const { return *this->Place; }
+
+private:
+  TriangleId Id = kNoTriangle;
+  std::size_t PartIndex, Triangle;
+  Corners At;
+  const Placement* Place;
+  Placement OfCopy; // which has no place in a table
+};
+
+// primaryHit() for a single pixel, without a table.
 bool primaryHit(const Snapshot& snapshot, TriangleId id, const Ray& ray, Hit& hit);
 
 // A ray that leaves a surface point: it starts off the triangle by the point's rounding error, on

@@ -73,12 +73,6 @@ Ray TracedFrame::primaryRay(std::uint32_t pixel) const
   return ray;
 }
 
-glm::dvec2 TracedFrame::centreOf(std::uint32_t pixel) const
-{
-  const auto width = static_cast<std::uint32_t>(this->snapshot.camera.width);
-  return { pixel % width + 0.5, pixel / width + 0.5 };
-}
-
 TileTracer::TileTracer(const TracedFrame& frame)
   : Frame(frame)
 {
@@ -149,15 +143,16 @@ void TileTracer::start(std::uint32_t index, std::uint32_t pixel, Wanted wanted,
   }
   const Ray ray = this->Frame.primaryRay(pixel);
   Hit hit;
+  Surfaces::Located where;
   const FirstHits::Outcome outcome =
-    this->Frame.firstHits.find(ids, pixel, ray, hit, result.multisampling);
+    this->Frame.firstHits.find(ids, pixel, ray, hit, where, result.multisampling);
   this->Missed[index] = outcome == FirstHits::Outcome::Missed;
   if (outcome != FirstHits::Outcome::Found)
   {
     return;
   }
   const SurfacePoint point =
-    this->Frame.surfaces.seenAtPixel(hit, ray.direction, this->Frame.centreOf(pixel));
+    this->Frame.surfaces.seenAtPixel(hit, ray.direction, pixel, where);
   const Material& material = *point.material;
   const bool mirror = this->Frame.isMirror(material);
   const bool optics = mirror || this->Frame.isGlass(material);

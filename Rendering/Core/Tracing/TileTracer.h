@@ -31,7 +31,6 @@ struct TracedFrame
   // The primary ray through the centre of a pixel, row 0 at the bottom; unit direction.
   Ray primaryRay(std::uint32_t pixel) const;
   // That centre, in pixels from the picture's lower left corner.
-  glm::dvec2 centreOf(std::uint32_t pixel) const;
 
   const Snapshot& snapshot;
   const Structure& structure;

@@ -300,7 +300,9 @@ TEST(Edges, AreSeenAtAPixelAsByRaysAlongIt)
     ray.direction = direction;
     Hit hit;
     ASSERT_TRUE(primaryHit(scene.snapshot, 0, ray, hit));
-    const SurfacePoint p = surfaces.seenAtPixel(hit, direction, centre);
+    Surfaces::Located where;
+    const auto pixel = static_cast<std::uint32_t>(90 * scene.snapshot.camera.width + column);
+    const SurfacePoint p = surfaces.seenAtPixel(hit, direction, pixel, where);
     EXPECT_NEAR(p.edgeShare, std::clamp(1.5 - (150.0 - centre.x), 0.0, 1.0), 1e-6) << column;
   }
 }
