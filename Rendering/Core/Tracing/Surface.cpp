@@ -1,6 +1,7 @@
 // Implements surface points. Geometry in double; colours in float, as the shared shading has it.
 #include "Rendering/Core/Tracing/Surface.h"
 
+#include "Rendering/Core/Structures/InstructionSet.h"
 #include "Rendering/Core/Surface/EdgeLookup.h"
 #include "Rendering/Core/Surface/SurfaceColors.h"
 
@@ -194,13 +195,8 @@ glm::dvec3 Surfaces::positionOf(const Hit& hit) const
   return corners.a + hit.u * (corners.b - corners.a) + hit.v * (corners.c - corners.a);
 }
 
-SurfacePoint Surfaces::at(const Hit& hit, const glm::dvec3& direction) const
-{
-  shading::HrtTerms terms;
-  return this->evaluate(hit, direction, Located(*this, hit.triangle), terms);
-}
-
-SurfacePoint Surfaces::evaluate(
+// In the callers themselves: those that want no terms need not have them in memory.
+HRT_ALWAYS_INLINE SurfacePoint Surfaces::evaluate(
   const Hit& hit, const glm::dvec3& direction, const Located& where,
   shading::HrtTerms& terms) const
 {
@@ -247,15 +243,26 @@ SurfacePoint Surfaces::evaluate(
   return point;
 }
 
+SurfacePoint Surfaces::plainAt(
+  const Hit& hit, const glm::dvec3& direction, const Located& where) const
+{
+  shading::HrtTerms terms;
+  return this->evaluate(hit, direction, where, terms);
+}
+
+SurfacePoint Surfaces::at(const Hit& hit, const glm::dvec3& direction) const
+{
+  return this->plainAt(hit, direction, Located(*this, hit.triangle));
+}
+
 SurfacePoint Surfaces::seenAtPixel(
   const Hit& hit, const glm::dvec3& direction, std::uint32_t pixel, Located& where) const
 {
   where.locate(*this, hit.triangle);
   const Part& part = this->Scene.parts[where.part()];
-  shading::HrtTerms terms;
   if (!part.showsEdges())
   {
-    return this->evaluate(hit, direction, where, terms);
+    return this->plainAt(hit, direction, where);
   }
   const auto width = static_cast<std::uint32_t>(this->Scene.camera.width);
   const glm::dvec2 centre(pixel % width + 0.5, pixel / width + 0.5);
@@ -271,6 +278,7 @@ SurfacePoint Surfaces::seenAtPixel(
   shown.u = seen.uv.x;
   shown.v = seen.uv.y;
   where.locate(*this, shown.triangle);
+  shading::HrtTerms terms;
   SurfacePoint point = this->evaluate(shown, direction, where, terms);
   addEdges(edges, material.edges, seen.nearest, this->ViewAxes, terms, point);
   return point;
@@ -287,14 +295,14 @@ Way Surfaces::beginning(const glm::dvec3& direction, double length) const
 SurfacePoint Surfaces::seenFrom(
   const Hit& hit, const glm::dvec3& direction, const Way& way) const
 {
-  shading::HrtTerms terms;
   const Located where(*this, hit.triangle);
-  SurfacePoint point = this->evaluate(hit, direction, where, terms);
-  const Part& part = this->Scene.parts[point.part];
+  const Part& part = this->Scene.parts[where.part()];
   if (!part.showsEdges())
   {
-    return point;
+    return this->plainAt(hit, direction, where);
   }
+  shading::HrtTerms terms;
+  SurfacePoint point = this->evaluate(hit, direction, where, terms);
   // A window across the ray, about the point where it meets the surface.
   const glm::dvec3 d = glm::normalize(direction);
   const glm::dvec3 size = glm::abs(d);

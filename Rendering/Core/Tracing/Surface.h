@@ -108,7 +108,9 @@ private:
   };
 
   static Placement placement(const Part& part, const glm::dvec3& origin, std::size_t copy);
-  // at(), with the terms that the colours are made from.
+  // at(), where the triangle is located; and with the terms that the colours are made from.
+  SurfacePoint plainAt(
+    const Hit& hit, const glm::dvec3& direction, const Located& where) const;
   SurfacePoint evaluate(const Hit& hit, const glm::dvec3& direction, const Located& where,
     shading::HrtTerms& terms) const;
 
