@@ -38,6 +38,10 @@ bool movesWithTheView(vtkProp* prop)
 
 bool othersDraw(const vtkRenderState* state, vtkHybridScene& scene)
 {
+  if (!scene.GetHostedActors().empty())
+  {
+    return true;
+  }
   vtkProp** const props = state->GetPropArray();
   return std::any_of(props, props + state->GetPropArrayCount(), [&scene](vtkProp* prop) {
     return !scene.IsDrawnByTracer(prop) && movesWithTheView(prop);

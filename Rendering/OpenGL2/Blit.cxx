@@ -10,6 +10,8 @@
 #include "Blit_fs.h"
 #include "ScreenTriangle_vs.h"
 
+#include <string>
+
 namespace hrt
 {
 namespace gl
@@ -23,9 +25,11 @@ Blit::Blit(ObjectPool& pool)
 
 //------------------------------------------------------------------------------
 bool Blit::draw(vtkOpenGLRenderWindow* window, const Picture& picture, const PixelBounds& bounds,
-  int x, int y)
+  bool margin, int x, int y)
 {
-  vtkShaderProgram* program = readyProgram(window, ScreenTriangle_vs, Blit_fs);
+  std::string fragments = Blit_fs;
+  vtkShaderProgram::Substitute(fragments, "//HRT::Define", margin ? "#define HRT_MARGIN" : "");
+  vtkShaderProgram* program = readyProgram(window, ScreenTriangle_vs, fragments);
   if (!program)
   {
     return false;
@@ -64,10 +68,14 @@ bool Blit::draw(vtkOpenGLRenderWindow* window, const Picture& picture, const Pix
   program->SetUniformi("useSecondary", picture.useSecondary ? 1 : 0);
   program->SetUniformi("reversedDepth", picture.hits.convention().reversed ? 1 : 0);
 
-  program->SetUniform2f("perW", picture.margin.perW);
-  program->SetUniformf("marginByW", picture.margin.byW);
-  program->SetUniformf("fixedMargin", DepthMargin::kFixed);
-  program->SetUniformf("marginBySlope", DepthMargin::kBySlope);
+  if (margin)
+  {
+    program->SetUniform2f("perW", picture.margin.perW);
+    program->SetUniformf("marginByW", picture.margin.byW);
+    program->SetUniformf("fixedMargin", DepthMargin::kFixed);
+    program->SetUniformf("marginBySlope", DepthMargin::kBySlope);
+    program->SetUniformf("steepestChange", DepthMargin::kSteepest);
+  }
 
   glBindVertexArray(this->VertexArray);
   glDrawArrays(GL_TRIANGLES, 0, 3);

@@ -18,9 +18,9 @@ public:
   explicit Blit(ObjectPool& pool);
 
   // Draws to the framebuffer that is bound, with the picture's corner at (x, y), the pixels within
-  // the bounds.
-  bool draw(vtkOpenGLRenderWindow* window, const Picture& picture, const PixelBounds& bounds, int x,
-    int y);
+  // the bounds. `margin`: whether the depth is put behind by the picture's margin, for what VTK draws next.
+  bool draw(vtkOpenGLRenderWindow* window, const Picture& picture, const PixelBounds& bounds,
+    bool margin, int x, int y);
 
 private:
   GLuint VertexArray;

@@ -32,6 +32,8 @@ struct DepthMargin
 
   static constexpr float kFixed = 8.0f * 0x1p-24f; // of both ways
   static constexpr float kBySlope = 2.0f / 256.0f;
+  // From pixel to pixel: what changes by more is another surface.
+  static constexpr float kSteepest = 1.0f / 16.0f;
 
   static DepthMargin of(const Snapshot& snapshot);
 };

@@ -99,6 +99,7 @@ std::string FrameRenderer::render(const std::shared_ptr<const Snapshot>& snapsho
   const SettingsChanges settingsChanges = compareSettings(this->LastSettings, settings);
   Facts facts = gatherFacts(*snapshot, settings.tracedBounds);
   facts.conditions = conditions;
+  this->OthersDraw = conditions.othersDraw;
   const Caches caches = this->currentCaches(*snapshot, facts, settings);
   FramePlan& plan = this->Statistics.plan;
   plan = planFrame(facts, settings, settingsChanges, changes, caches);
@@ -177,7 +178,8 @@ std::string FrameRenderer::runStage(Stage stage, const Settings& settings)
 //------------------------------------------------------------------------------
 std::string FrameRenderer::show(std::size_t picture, const PixelBounds& bounds, int x, int y)
 {
-  return this->ToWindow.draw(this->Pool.window(), this->Pictures[picture], bounds, x, y)
+  return this->ToWindow.draw(
+           this->Pool.window(), this->Pictures[picture], bounds, this->OthersDraw, x, y)
     ? std::string()
     : "the blit's shader is not usable";
 }

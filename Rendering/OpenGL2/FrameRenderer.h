@@ -81,6 +81,7 @@ private:
   ObjectPool Pool;
   DepthConvention Convention;
   bool Hardware;
+  bool OthersDraw = true; // in this frame, besides what is traced
   GPUScene OnGPU;
   HitReadBack ReadBack;
   Blit ToWindow;
