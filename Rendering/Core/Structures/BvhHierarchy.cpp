@@ -141,6 +141,11 @@ Hierarchy::Hierarchy(Device& device, const std::vector<MemberMesh>& members)
   {
     this->Members.resize(leaves.size() * kLanes);
   }
+  const bool placed = !members.empty() && members.front().placement;
+  if (placed)
+  {
+    this->Corners.resize(leaves.size() * kLanes);
+  }
   for (std::size_t block = 0; block < leaves.size(); ++block)
   {
     const WideTree::Leaf& leaf = leaves[block];
@@ -150,6 +155,11 @@ Hierarchy::Hierarchy(Device& device, const std::vector<MemberMesh>& members)
       const AllTriangles::Place place = triangles.placeOf(leaf.box[used ? lane : 0]);
       this->setLane(block, static_cast<int>(lane), triangles.cornersOf(place));
       this->Blocks[block].triangle[lane] = used ? place.triangle : kNoTriangle;
+      if (placed)
+      {
+        this->Corners[block * kLanes + lane] =
+          members[place.member].geometry->triangles[place.triangle];
+      }
       if (!this->Members.empty())
       {
         this->Members[block * kLanes + lane] = place.member;
@@ -158,7 +168,7 @@ Hierarchy::Hierarchy(Device& device, const std::vector<MemberMesh>& members)
   }
   for (const MemberMesh& member : members)
   {
-    if (member.placement)
+    if (placed)
     {
       this->Placed.push_back(member.geometry);
     }

@@ -72,7 +72,8 @@ public:
         TriangleBlock::kLanes };
     }
     const Geometry& mesh = *this->Placed[this->memberNumber(block, lane)];
-    const std::array<std::uint32_t, 3>& v = mesh.triangles[of.triangle[lane]];
+    const std::array<std::uint32_t, 3>& v =
+      this->Corners[block * TriangleBlock::kLanes + static_cast<std::size_t>(lane)];
     return { { &mesh.positions[v[0]].x, &mesh.positions[v[1]].x, &mesh.positions[v[2]].x }, 1 };
   }
 
@@ -92,6 +93,9 @@ private:
   HugePageVector<TriangleBlock> Blocks;
   std::vector<std::uint32_t> Members; // kLanes a block, unless all triangles are of one member
   std::vector<std::shared_ptr<const Geometry>> Placed; // by member; none if it is not placed
+  // Of a lane of a placed one its triangle's vertices: near each other here as they are in space, they
+  // are fetched in half the time that the mesh' own list takes.
+  std::vector<std::array<std::uint32_t, 3>> Corners;
   TraversalBox Box;
   EntryBox Entry;
   SieveSlack Slack;
