@@ -25,7 +25,9 @@ def arguments():
     parser.add_argument("--time", type=float, default=27.0, help="moment of a single picture, 0 to 50")
     parser.add_argument("--frames", type=int, default=1, help="pictures of the whole animation")
     parser.add_argument("--size", type=int, nargs=2, default=(800, 600), metavar=("WIDTH", "HEIGHT"))
-    parser.add_argument("--textures", action="store_true", help="with the scene's 44 images")
+    parser.add_argument(
+        "--textures", action=argparse.BooleanOptionalAction, default=True, help="the scene's 44 images"
+    )
     return parser.parse_args()
 
 
