@@ -146,7 +146,9 @@ TraversalBox TopLevel::boxOf(std::size_t i) const
 
 void TopLevel::rebuild(Device& device)
 {
+  // Lists of a million copies that grow leave holes in the heap as large as themselves.
   std::vector<RTCBuildPrimitive> boxes;
+  boxes.reserve(this->Count);
   for (std::size_t i = 0; i < this->Count && this->Count > 1; ++i)
   {
     const TraversalBox box = this->boxOf(i);
@@ -157,6 +159,7 @@ void TopLevel::rebuild(Device& device)
   const std::vector<WideTree::Leaf> leaves =
     this->Tree.build(device, boxes, 1, "building the hierarchy of the parts");
   this->PartOfLeaf.clear();
+  this->PartOfLeaf.reserve(leaves.size());
   for (const WideTree::Leaf& leaf : leaves)
   {
     this->PartOfLeaf.push_back(leaf.box[0]);

@@ -192,6 +192,7 @@ std::vector<WideTree::Leaf> WideTree::build(
     return {}; // Embree would make a leaf of nothing
   }
   Gathering gathering(this->Nodes);
+  gathering.Leaves.reserve(boxes.size() / mostInLeaf); // no fewer
   RTCBuildArguments arguments = rtcDefaultBuildArguments();
   arguments.maxDepth = kDeepest;
   arguments.sahBlockSize = mostInLeaf;
