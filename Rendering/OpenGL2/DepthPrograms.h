@@ -25,7 +25,8 @@ namespace gl
 class DepthPrograms
 {
 public:
-  // What parts are drawn from; all must outlive it, and so must the snapshot. Of parts and textures only perforated ones ask.
+  // What parts are drawn from; all must outlive it, and so must the snapshot. Of parts and textures only
+  // perforated ones ask.
   struct Tables
   {
     const GeometryBuffers& geometry;

@@ -23,8 +23,9 @@ namespace
 bool sameContent(const Geometry& a, const Geometry& b)
 {
   return a.origin == b.origin && a.givenFrom == b.givenFrom && a.colorSource == b.colorSource &&
-    a.lookupWidth == b.lookupWidth && a.lookupHeight == b.lookupHeight && a.triangles == b.triangles && a.cellIds == b.cellIds &&
-    a.positions == b.positions && a.normals == b.normals && a.colors == b.colors &&
+    a.lookupWidth == b.lookupWidth && a.lookupHeight == b.lookupHeight &&
+    a.triangles == b.triangles && a.cellIds == b.cellIds && a.positions == b.positions &&
+    a.normals == b.normals && a.colors == b.colors &&
     a.coordinates == b.coordinates && a.textureCoordinates == b.textureCoordinates &&
     a.sides == b.sides && a.lookup == b.lookup;
 }

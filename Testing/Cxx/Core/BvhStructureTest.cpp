@@ -14,6 +14,7 @@ namespace
 {
 
 using namespace hrt;
+using scenes::placedTori;
 using scenes::Random;
 
 std::shared_ptr<Geometry> soup(Random& random, int count, double size)
@@ -28,25 +29,6 @@ std::shared_ptr<Geometry> soup(Random& random, int count, double size)
     }
   }
   return scenes::makeGeometry(positions);
-}
-
-// Three placements of one mesh: turned and stretched, mirrored, and shrunk, around `centre`.
-Snapshot placedTori(const glm::dvec3& centre)
-{
-  const auto mesh = scenes::torus(40, 20, 1.0, 0.4);
-  const glm::dmat4 at = glm::translate(glm::dmat4(1.0), centre);
-  Snapshot s;
-  scenes::addPart(s, mesh,
-    at * glm::rotate(glm::dmat4(1.0), 0.7, glm::dvec3(1, 2, 3)) *
-      glm::scale(glm::dmat4(1.0), { 1.0, 2.0, 0.5 }));
-  scenes::addPart(s, scenes::makeGeometry({}));
-  scenes::addPart(s, mesh,
-    glm::translate(at, glm::dvec3(0.5, 0.2, -0.4)) *
-      glm::scale(glm::dmat4(1.0), { -1.0, 1.0, 1.0 }));
-  scenes::addPart(s, mesh,
-    glm::translate(at, glm::dvec3(-1, 0, 0)) * glm::scale(glm::dmat4(1.0), glm::dvec3(0.01)));
-  s.origin = centre;
-  return s;
 }
 
 void expectEqualToBruteForce(const Snapshot& s, int rays, const char* configuration = "")

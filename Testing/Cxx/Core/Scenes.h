@@ -107,6 +107,25 @@ inline Part& addPart(Snapshot& snapshot, std::shared_ptr<const Geometry> geometr
   return snapshot.parts.back();
 }
 
+// Three placements of one mesh: turned and stretched, mirrored, and shrunk, around `centre`.
+inline Snapshot placedTori(const glm::dvec3& centre)
+{
+  const auto mesh = torus(40, 20, 1.0, 0.4);
+  const glm::dmat4 at = glm::translate(glm::dmat4(1.0), centre);
+  Snapshot s;
+  addPart(s, mesh,
+    at * glm::rotate(glm::dmat4(1.0), 0.7, glm::dvec3(1, 2, 3)) *
+      glm::scale(glm::dmat4(1.0), { 1.0, 2.0, 0.5 }));
+  addPart(s, makeGeometry({}));
+  addPart(s, mesh,
+    glm::translate(at, glm::dvec3(0.5, 0.2, -0.4)) *
+      glm::scale(glm::dmat4(1.0), { -1.0, 1.0, 1.0 }));
+  addPart(s, mesh,
+    glm::translate(at, glm::dvec3(-1, 0, 0)) * glm::scale(glm::dmat4(1.0), glm::dvec3(0.01)));
+  s.origin = centre;
+  return s;
+}
+
 // A material that shows one colour whatever the light.
 inline Material glowing(glm::vec3 color)
 {
