@@ -314,8 +314,9 @@ public:
    * -1 also in other data), all 64-bit with -1 where nothing was hit; "barycentric" (u, v of the second
    * and third corner; with DirectRendering as the rasteriser interpolated them), "position" (world),
    * "normal" (world, unit, on the viewer's side), "depth" (distance along the view axis), "shadow" (one
-   * component a light: its visible share, 1 lit to 0 in shadow), all with NaN where nothing was hit. Actors that
-   * are left to VTK are not in the buffers. An unknown name is an error and changes nothing. GetKnownBuffers lists all names. Default: none.
+   * component a light: its visible share, 1 lit to 0 in shadow), all with NaN where nothing was hit.
+   * Actors that are left to VTK are not in the buffers. An unknown name is an error and changes nothing.
+   * GetKnownBuffers lists all names. Default: none.
    */
   void SetBuffers(const std::vector<std::string>& names);
   // Only to say what is wrong: a script's string is a sequence too, of letters.
