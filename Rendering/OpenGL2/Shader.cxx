@@ -15,6 +15,7 @@
 #include "PrimaryShader_fs.h"
 #include "Shading.h"
 #include "ShadowLookup.h"
+#include "Sides.h"
 #include "Surface.h"
 #include "SurfaceColors.h"
 #include "TextureLookup.h"
@@ -63,6 +64,8 @@ std::string definitions(const SurfaceFeatures& features)
   text << "#define HRT_SHADOW_CLEAR shadowClearDepth\n";
   // One reciprocal root; in C++, where it matters, the exact quotient.
   text << "#define HRT_DIRECTION(v) normalize(v)\n";
+  text << "#define HRT_SELECT(condition, a, b) ((condition) ? (a) : (b))\n";
+  text << "#define HRT_ANY(condition) (condition)\n#define HRT_BOOL bool\n";
   return text.str();
 }
 
@@ -82,7 +85,7 @@ std::string primaryShaderSource(const SurfaceFeatures& features)
   std::string text = PrimaryShader_fs;
   vtkShaderProgram::Substitute(text, "//HRT::Fetch", kFetchVector);
   vtkShaderProgram::Substitute(
-    text, "//HRT::Shading", definitions(features) + Shading + Surface + ShadowLookup);
+    text, "//HRT::Shading", definitions(features) + Shading + Sides + Surface + ShadowLookup);
   vtkShaderProgram::Substitute(text, "//HRT::SurfaceColors", SurfaceColors);
   vtkShaderProgram::Substitute(text, "//HRT::Textures",
     features.textures ? std::string(TextureFetch) + TextureLookup : std::string());
@@ -98,7 +101,7 @@ std::string depthSource(const char* text, bool holes, bool offset)
   std::string code;
   if (holes)
   {
-    code = "#define HRT_HOLES\n" + definitions({}) + Shading + Surface + Holes;
+    code = "#define HRT_HOLES\n" + definitions({}) + Shading + Sides + Surface + Holes;
     vtkShaderProgram::Substitute(
       code, "//HRT::Textures", std::string(TextureFetch) + TextureLookup);
   }

@@ -6,7 +6,10 @@
 // and ReplaceShaderColor), so that a picture with all effects off equals VTK's. They are invariant
 // under rotations: the GPU evaluates them in view coordinates, the tracer in world coordinates.
 //
-// HRT_FUNCTION is `inline` in C++ and empty in GLSL. `real` is float, or double in the reference.
+// HRT_FUNCTION is `inline` in C++ and empty in GLSL. `real` is float, or double in the reference, or lanes
+// of them (Surface/SurfaceKernels.h), for which what depends on a point may not be decided by `if`:
+// HRT_SELECT(c, a, b) is a where c holds and b elsewhere, HRT_ANY(c) whether c holds anywhere, and HRT_BOOL
+// the type of c. A light is the same for all lanes but for its position.
 
 // Light kinds, as in hrt::Light plus VTK's short cut for a scene whose only light is one headlight.
 #define HRT_LIGHT_DIRECTIONAL 0
@@ -43,16 +46,6 @@ HRT_FUNCTION vec3 hrtInterpolate3(vec3 a, vec3 b, vec3 c, real u, real v)
   return a * (real(1.0) - u - v) + b * u + c * v;
 }
 
-HRT_FUNCTION vec4 hrtInterpolate4(vec4 a, vec4 b, vec4 c, real u, real v)
-{
-  return a * (real(1.0) - u - v) + b * u + c * v;
-}
-
-HRT_FUNCTION vec2 hrtInterpolate2(vec2 a, vec2 b, vec2 c, real u, real v)
-{
-  return a * (real(1.0) - u - v) + b * u + c * v;
-}
-
 // (t, u, v) where the ray meets the triangle's plane; no test whether it is inside. The ray is
 // parallel to the plane when the determinant is 0; then t is not finite.
 HRT_FUNCTION vec3 hrtIntersectPlane(vec3 origin, vec3 direction, vec3 a, vec3 b, vec3 c)
@@ -76,14 +69,6 @@ HRT_FUNCTION vec2 hrtClampBarycentrics(real u, real v)
   return vec2(max(cu - real(0.5) * excess, real(0.0)), max(cv - real(0.5) * excess, real(0.0)));
 }
 
-// The nearest texel of a width x height table at (s, t), clamped to the edge: VTK's look-up texture.
-HRT_FUNCTION int hrtLookupTexel(vec2 st, int width, int height)
-{
-  int column = int(clamp(floor(st.x * real(width)), real(0.0), real(width - 1)));
-  int row = int(clamp(floor(st.y * real(height)), real(0.0), real(height - 1)));
-  return row * width + column;
-}
-
 // Distance attenuation and cone of a light at a point whose unit direction from the light is `toward`.
 HRT_FUNCTION real hrtAttenuation(HrtLight light, vec3 toward, real distanceToLight)
 {
@@ -94,16 +79,13 @@ HRT_FUNCTION real hrtAttenuation(HrtLight light, vec3 toward, real distanceToLig
   real attenuation = real(1.0) /
     (light.attenuation.x + light.attenuation.y * distanceToLight +
       light.attenuation.z * distanceToLight * distanceToLight);
-  if (light.cosCone >= real(-1.0))
+  if (HRT_ANY(light.cosCone >= real(-1.0)))
   {
     real coneDot = dot(toward, light.direction);
-    if (coneDot < light.cosCone)
-    {
-      return real(0.0);
-    }
     // VTK's exponent 0 is a cone of even light; a wide cone may have a negative cosine only beyond
     // 90 degrees, where cosCone is off.
-    attenuation = attenuation * pow(max(coneDot, HRT_POW_FLOOR), light.exponent);
+    attenuation = HRT_SELECT(coneDot < light.cosCone, real(0.0),
+      attenuation * pow(max(coneDot, HRT_POW_FLOOR), light.exponent));
   }
   return attenuation;
 }
@@ -118,6 +100,17 @@ HRT_FUNCTION vec3 hrtLightDirectionAt(HrtLight light, vec3 position)
   return light.direction;
 }
 
+// The highlight at a cosine to its middle. Most surfaces have none, and a power is dear.
+HRT_FUNCTION real hrtLobe(HrtSurface surface, real cosine)
+{
+  if (HRT_ANY(
+        surface.specular.x + surface.specular.y + surface.specular.z > real(0.0)))
+  {
+    return pow(max(cosine, HRT_POW_FLOOR), surface.power);
+  }
+  return real(0.0);
+}
+
 // What one unshadowed light adds at a point. `normal` is unit and faces the viewer's side;
 // `toViewer` is the unit vector from the point back along the ray that sees it.
 HRT_FUNCTION vec3 hrtShadeLight(
@@ -126,14 +119,13 @@ HRT_FUNCTION vec3 hrtShadeLight(
   if (light.kind == HRT_LIGHT_SINGLE_HEADLIGHT)
   {
     real facing = max(real(0.0), -dot(normal, light.direction));
-    real lobe = pow(max(facing, HRT_POW_FLOOR), surface.power);
-    return (surface.diffuse * facing + surface.specular * lobe) * light.color;
+    return (surface.diffuse * facing + surface.specular * hrtLobe(surface, facing)) * light.color;
   }
   vec3 toward = hrtLightDirectionAt(light, position);
   real attenuation = hrtAttenuation(light, toward, length(position - light.position));
   real facing = max(real(0.0), -attenuation * dot(normal, toward));
-  real lobe = max(HRT_POW_FLOOR, dot(reflect(toward, normal), toViewer));
-  real highlight = sign(facing) * attenuation * pow(lobe, surface.power);
+  real lobe = hrtLobe(surface, dot(reflect(toward, normal), toViewer));
+  real highlight = sign(facing) * attenuation * lobe;
   return (surface.diffuse * facing + surface.specular * highlight) * light.color;
 }
 

@@ -1,14 +1,18 @@
-// Compiles the shared sources (Shading.glsl, Surface.glsl) as C++: hrt::shading in single precision, as
+// Compiles the shared sources (Shading.glsl, Sides.glsl, Surface.glsl) as C++: hrt::shading in single precision, as
 // the GPU evaluates them, and hrt::shading64 in double, for geometry and references. Nothing is written
 // twice.
 #pragma once
 
+#include "Rendering/Core/Math/Power.h"
 #include "Rendering/Core/Snapshot.h"
 
 #include <glm/glm.hpp>
 
 #define HRT_FUNCTION inline
 #define HRT_DIRECTION(v) ((v) / length(v))
+#define HRT_SELECT(condition, a, b) ((condition) ? (a) : (b))
+#define HRT_ANY(condition) (condition)
+#define HRT_BOOL bool
 
 namespace hrt
 {
@@ -30,11 +34,15 @@ using glm::max;
 using glm::min;
 using glm::mix;
 using glm::normalize;
-using glm::pow;
 using glm::reflect;
 using glm::sign;
 using glm::sqrt;
+inline float pow(float x, float y)
+{
+  return power(x, y);
+}
 #include "Rendering/Core/Shading/Shading.glsl"
+#include "Rendering/Core/Surface/Sides.glsl"
 #include "Rendering/Core/Surface/Pbr.glsl"
 #include "Rendering/Core/Surface/Surface.glsl"
 }
@@ -63,6 +71,7 @@ using glm::pow;
 using glm::reflect;
 using glm::sign;
 #include "Rendering/Core/Shading/Shading.glsl"
+#include "Rendering/Core/Surface/Sides.glsl"
 #include "Rendering/Core/Surface/Pbr.glsl"
 #include "Rendering/Core/Surface/Surface.glsl"
 }
@@ -70,3 +79,6 @@ using glm::sign;
 
 #undef HRT_FUNCTION
 #undef HRT_DIRECTION
+#undef HRT_SELECT
+#undef HRT_ANY
+#undef HRT_BOOL

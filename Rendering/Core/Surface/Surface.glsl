@@ -1,36 +1,24 @@
 // From a hit to the surface that a ray sees there: sides, normals and the terms of its reflection. Like
 // Shading.glsl, with which it is compiled, this source is GLSL and C++ at once. These functions take
 // values; what has to be fetched first stands in SurfaceColors.glsl.
-//
-// Beside what Shading.glsl asks for, whoever includes it provides HRT_DIRECTION(v), the unit vector
-// along a v that is not zero.
 
-// A triangle as one ray sees it.
-struct HrtSides
+// Barycentric interpolation: see hrtInterpolate3.
+HRT_FUNCTION vec4 hrtInterpolate4(vec4 a, vec4 b, vec4 c, real u, real v)
 {
-  vec3 geometricNormal; // unit, towards the viewer
-  bool front;           // by the corners' winding, as gl_FrontFacing
-};
-
-HRT_FUNCTION HrtSides hrtSides(vec3 a, vec3 b, vec3 c, vec3 direction)
-{
-  vec3 wound = cross(b - a, c - a);
-  HrtSides sides;
-  sides.front = !(dot(wound, direction) > real(0.0));
-  sides.geometricNormal = normalize(sides.front ? wound : -wound);
-  return sides;
+  return a * (real(1.0) - u - v) + b * u + c * v;
 }
 
-// The interpolated normal, of any length, as VTK turns it: with the side that is seen, whatever way it
-// points. Where normals cancel out, the triangle's own.
-HRT_FUNCTION vec3 hrtSmoothNormal(vec3 smoothNormal, vec3 geometricNormal, bool side)
+HRT_FUNCTION vec2 hrtInterpolate2(vec2 a, vec2 b, vec2 c, real u, real v)
 {
-  if (!(length(smoothNormal) > real(0.0)))
-  {
-    return geometricNormal;
-  }
-  vec3 n = HRT_DIRECTION(smoothNormal);
-  return side ? n : -n;
+  return a * (real(1.0) - u - v) + b * u + c * v;
+}
+
+// The nearest texel of a width x height table at (s, t), clamped to the edge: VTK's look-up texture.
+HRT_FUNCTION int hrtLookupTexel(vec2 st, int width, int height)
+{
+  int column = int(clamp(floor(st.x * real(width)), real(0.0), real(width - 1)));
+  int row = int(clamp(floor(st.y * real(height)), real(0.0), real(height - 1)));
+  return row * width + column;
 }
 
 // One side's reflection terms. Ambient and diffuse coefficients are apart from the colours because

@@ -22,6 +22,21 @@ bool isVeil(const Part& part, bool tinted)
   return part.visibleToRays && part.tintsShadow && (tinted || part.perforated);
 }
 
+// How a share of a light counts in a signature.
+unsigned int stateOf(float share)
+{
+  return share == 0.0f ? 0 : share == 1.0f ? 1 : 2;
+}
+
+template <class Visit>
+void forEachBit(unsigned int bits, Visit visit)
+{
+  for (; bits != 0; bits &= bits - 1)
+  {
+    visit(static_cast<unsigned int>(__builtin_ctz(bits)));
+  }
+}
+
 // VTK multiplies textures with what is shaded, ambient light and highlights among it.
 Lighting::Target textured(const Lighting::Target& target, const SurfacePoint& point)
 {
@@ -46,6 +61,7 @@ Lighting::Lighting(const Snapshot& snapshot, const Surfaces& surfaces, const Str
   for (const Light& light : snapshot.lights)
   {
     this->Lights.push_back(shadingLight(light, snapshot.singleHeadlight, glm::dmat4(1.0)));
+    this->LaneLights.push_back(this->laneLight(light, this->Lights.back()));
     this->ViewLights.push_back(
       shadingLight(light, snapshot.singleHeadlight, snapshot.camera.worldToView));
   }
@@ -54,6 +70,27 @@ Lighting::Lighting(const Snapshot& snapshot, const Surfaces& surfaces, const Str
   this->NormalsToView = glm::inverseTranspose(glm::dmat3(this->ToView));
   this->AnyVeil = std::any_of(snapshot.parts.begin(), snapshot.parts.end(),
     [&settings](const Part& part) { return isVeil(part, settings.tintedShadows); });
+}
+
+LaneLight Lighting::laneLight(const Light& light, const shading::HrtLight& shaded) const
+{
+  LaneLight l;
+  const glm::dvec3 position = light.position - this->Scene.origin;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    l.position[axis] = position[axis];
+    l.directionOf[axis] = light.direction[axis];
+    l.direction[axis] = shaded.direction[axis];
+    l.color[axis] = shaded.color[axis];
+    l.attenuation[axis] = shaded.attenuation[axis];
+    l.eye[axis] = this->Eye[axis];
+  }
+  l.cosCone = shaded.cosCone;
+  l.exponent = shaded.exponent;
+  l.kind = shaded.kind;
+  l.positional = light.kind == Light::Kind::Positional;
+  l.fromEye = !l.positional && light.isHeadlight && this->HasEye;
+  return l;
 }
 
 // Single precision never sees a large coordinate: the light is placed relative to the point.
@@ -90,12 +127,13 @@ glm::vec3 Lighting::arrivingShare(const SurfacePoint& point, std::size_t light,
   {
     return glm::vec3(1.0f);
   }
-  const auto note = [&](int state)
-  { target.signature += signatureOf(PathEvent::Light, target.bounces, light, state); };
+  const auto note = [&](unsigned int state)
+  { this->note(target.signature, PathEvent::Light, target.bounces, light, state); };
   if (target.direct && this->Settings.shadowMaps)
   {
-    const float share = this->shareFromMap(point, light);
-    note(share == 0.0f ? 0 : share == 1.0f ? 1 : 2);
+    const float share = this->shareFromMap(
+      point.position, point.geometricNormal, this->Scene.parts[point.part], light);
+    note(stateOf(share));
     return glm::vec3(share);
   }
   ++shadowRays.asked;
@@ -174,10 +212,10 @@ void Lighting::addLights(const SurfacePoint& point, const shading::HrtSurface& c
     {
       if (portion != glm::vec3(0.0f))
       {
-        const float share = this->shareFromMap(point, i);
+        const float share = this->shareFromMap(
+          point.position, point.geometricNormal, this->Scene.parts[point.part], i);
         target.sum += portion * share;
-        target.signature += signatureOf(PathEvent::Light, target.bounces, i,
-          share == 0.0f ? 0 : share == 1.0f ? 1 : 2);
+        this->note(target.signature, PathEvent::Light, target.bounces, i, stateOf(share));
       }
       continue;
     }
@@ -197,13 +235,116 @@ void Lighting::addLights(const SurfacePoint& point, const shading::HrtSurface& c
       continue;
     }
     ++shadowRays.answered;
-    target.signature +=
-      signatureOf(PathEvent::Light, target.bounces, i, seen == Sight::Free ? 1 : 0);
+    this->note(
+      target.signature, PathEvent::Light, target.bounces, i, seen == Sight::Free ? 1 : 0);
     if (seen == Sight::Free)
     {
       target.sum += portion;
     }
   }
+}
+
+void Lighting::shade(SurfaceBlock& block, unsigned int bits, const Target* const* targets,
+  ShadowQueue& queue, RayCount& shadowRays) const
+{
+  SurfaceLanes& lanes = block.lanes();
+  const auto first = static_cast<unsigned int>(__builtin_ctz(bits));
+  for (unsigned int lane = 0; lane < SurfaceBlock::kLanes; ++lane)
+  {
+    const unsigned int of = ((bits >> lane) & 1u) != 0 ? lane : first;
+    const SurfaceColoring& coloring = block.coloring(of);
+    SurfaceBlock::setVector(lanes.diffuse, lane, coloring.colors.diffuse);
+    SurfaceBlock::setVector(lanes.specular, lane, coloring.colors.specular);
+    lanes.power[lane] = coloring.colors.power;
+    const glm::vec3 weight = targets[of]->weight * coloring.textureColor;
+    SurfaceBlock::setVector(lanes.weight, lane, weight);
+    lanes.twinReach[lane] = this->Points.coincidence().twinReach(block.partIndex(of));
+    if (of == lane)
+    {
+      targets[lane]->sum += weight *
+        (this->Scene.lights.empty() ? shading::hrtUnlit(coloring.colors)
+                                    : coloring.colors.ambient);
+    }
+  }
+  for (std::size_t i = 0; i < this->Lights.size(); ++i)
+  {
+    const unsigned int shining = block.kernels().shade(this->LaneLights[i], lanes) & bits;
+    this->addPortions(block, bits, shining, i, targets, queue, shadowRays);
+  }
+}
+
+void Lighting::addPortions(SurfaceBlock& block, unsigned int bits, unsigned int shining,
+  std::size_t light, const Target* const* targets, ShadowQueue& queue, RayCount& shadowRays) const
+{
+  SurfaceLanes& lanes = block.lanes();
+  const auto portion = [&](unsigned int lane)
+  { return SurfaceBlock::vectorOf(lanes.portion, lane); };
+  if (!this->Settings.shadows)
+  {
+    forEachBit(bits, [&](unsigned int lane) { targets[lane]->sum += portion(lane); });
+    return;
+  }
+  const auto note = [&](unsigned int lane, unsigned int state)
+  {
+    this->note(
+      targets[lane]->signature, PathEvent::Light, targets[lane]->bounces, light, state);
+  };
+  if (targets[__builtin_ctz(bits)]->direct && this->Settings.shadowMaps)
+  {
+    forEachBit(shining,
+      [&](unsigned int lane)
+      {
+        const float share = this->shareFromMap(
+          block.position(lane), block.geometricNormal(lane), block.part(lane), light);
+        targets[lane]->sum += portion(lane) * share;
+        note(lane, stateOf(share));
+      });
+    return;
+  }
+  const Light& source = this->Scene.lights[light];
+  // Every lane's ray is free, blocked without being traced, or open.
+  unsigned int free = shining, open = 0;
+  if (shining != 0 && source.castsShadows)
+  {
+    const LaneLight& laneLight = this->LaneLights[light];
+    const unsigned int facing = block.kernels().shadowRays(laneLight, lanes) & shining;
+    free = 0;
+    open = facing;
+    if (laneLight.fromEye)
+    {
+      forEachBit(facing,
+        [&](unsigned int lane)
+        {
+          if (!(lanes.shadowEnd[lane] > 0.0))
+          {
+            free |= 1u << lane;
+            open &= ~(1u << lane);
+          }
+        });
+    }
+  }
+  const auto count = [](unsigned int lanesOf)
+  { return static_cast<std::uint64_t>(__builtin_popcount(lanesOf)); };
+  shadowRays.asked += count(bits);
+  shadowRays.traced += count(open);
+  shadowRays.answered += count(bits & ~open);
+  forEachBit(free, [&](unsigned int lane) { targets[lane]->sum += portion(lane); });
+  forEachBit(bits & ~open, [&](unsigned int lane) { note(lane, (free >> lane) & 1u); });
+  forEachBit(open,
+    [&](unsigned int lane)
+    {
+      Ray ray;
+      ray.origin = SurfaceBlock::vectorOf(lanes.shadowOrigin, lane);
+      ray.direction = SurfaceBlock::vectorOf(lanes.shadowDirection, lane);
+      ray.tMaximum = lanes.shadowEnd[lane];
+      ray.originTriangle = block.hit(lane).triangle;
+      ray.twinEnd = lanes.twinEnd[lane];
+      queue.rays.push_back(ray);
+      queue.portions.push_back(portion(lane));
+      queue.pixels.push_back(targets[lane]->pixel);
+      queue.lights.push_back(static_cast<std::uint32_t>(light));
+      queue.bounces.push_back(static_cast<std::uint8_t>(targets[lane]->bounces));
+    });
 }
 
 Lighting::Sight Lighting::sight(const SurfacePoint& point, const Light& light, Ray& ray) const
@@ -246,7 +387,7 @@ glm::vec3 Lighting::throughVeil(
   {
     return glm::vec3(1.0f);
   }
-  signature += signatureOf(PathEvent::Veil, bounces, point.part, point.frontSide ? 1 : 0);
+  this->note(signature, PathEvent::Veil, bounces, point.part, point.frontSide ? 1 : 0);
   const float a = glm::clamp(point.opacity, 0.0f, 1.0f);
   return (1.0f - a) * (1.0f - a + a * point.diffuseColor);
 }
@@ -279,14 +420,14 @@ glm::vec3 Lighting::transmittance(Ray ray, int bounces, PathSignature& signature
 }
 
 // As the GPU ray caster looks it up: in single precision, in view coordinates.
-float Lighting::shareFromMap(const SurfacePoint& point, std::size_t light) const
+float Lighting::shareFromMap(const glm::dvec3& point, const glm::dvec3& geometricNormal,
+  const Part& part, std::size_t light) const
 {
   const ShadowMapTables& tables = *this->Settings.shadowMaps;
   const ShadowSlot& slot = tables.slots[light];
-  const glm::vec3 position(this->ToView * glm::dvec4(point.position, 1.0));
-  const glm::vec3 normal(
-    glm::normalize(this->NormalsToView * point.geometricNormal));
-  const float folds = this->Scene.parts[point.part].isFlat() ? 0.0f : 1.0f;
+  const glm::vec3 position(this->ToView * glm::dvec4(point, 1.0));
+  const glm::vec3 normal(glm::normalize(this->NormalsToView * geometricNormal));
+  const float folds = part.isFlat() ? 0.0f : 1.0f;
   return shading::ShadowLookup(tables).hrtLightVisibility(
     slot.firstFace, slot.faceCount, this->ViewLights[light], position, normal, folds);
 }
@@ -295,7 +436,8 @@ float Lighting::visibleShare(const SurfacePoint& point, std::size_t light) const
 {
   if (this->Settings.shadowMaps)
   {
-    return this->shareFromMap(point, light);
+    return this->shareFromMap(
+      point.position, point.geometricNormal, this->Scene.parts[point.part], light);
   }
   Ray ray;
   const Sight seen = this->sight(point, this->Scene.lights[light], ray);
@@ -325,8 +467,7 @@ void Lighting::flush(ShadowQueue& queue, RayOrder order, std::vector<glm::vec3>&
   {
     const std::uint32_t pixel = queue.pixels[i];
     const int bounces = queue.bounces[i];
-    signatures[pixel] +=
-      signatureOf(PathEvent::Light, bounces, queue.lights[i], blocked[i] ? 0 : 1);
+    this->note(signatures[pixel], PathEvent::Light, bounces, queue.lights[i], blocked[i] ? 0 : 1);
     if (!blocked[i])
     {
       sums[pixel] += this->AnyVeil

@@ -5,7 +5,7 @@
 
 #include "Rendering/Core/Tracing/Meeting.h"
 #include "Rendering/Core/Tracing/PathSignature.h"
-#include "Rendering/Core/Tracing/Surface.h"
+#include "Rendering/Core/Tracing/SurfaceBlock.h"
 #include "Rendering/Core/Tracing/Tracer.h"
 
 #include <cstdint>
@@ -58,6 +58,15 @@ public:
   void shade(const SurfacePoint& point, const glm::dvec3& toViewer, const Target& target,
     ShadowQueue& queue, RayCount& shadowRays) const;
 
+  // The same for several points side by side, of lit surfaces that are not physically based: those lanes of
+  // the block that `bits` has, not zero. `targets`: of each of them.
+  static bool goesInBlocks(const Material& material)
+  {
+    return material.lit && !material.physical.used;
+  }
+  void shade(SurfaceBlock& block, unsigned int bits, const Target* const* targets,
+    ShadowQueue& queue, RayCount& shadowRays) const;
+
   // The lights' specular part alone: the highlights on glass.
   void highlights(const SurfacePoint& point, const glm::dvec3& toViewer, const Target& target,
     ShadowQueue& queue, RayCount& shadowRays) const;
@@ -79,6 +88,7 @@ private:
   void addLights(const SurfacePoint& point, const shading::HrtSurface& colors,
     const glm::dvec3& toViewer, const Target& target, ShadowQueue& queue,
     RayCount& shadowRays) const;
+  LaneLight laneLight(const Light& light, const shading::HrtLight& shaded) const;
   shading::HrtLight lightFrom(const SurfacePoint& point, std::size_t index) const;
 
   enum class Sight
@@ -88,10 +98,23 @@ private:
     Open     // `ray` has to be traced
   };
   Sight sight(const SurfacePoint& point, const Light& light, Ray& ray) const;
+  // What becomes of the portions that the block's lanes get of a light.
+  void addPortions(SurfaceBlock& block, unsigned int bits, unsigned int shining, std::size_t light,
+    const Target* const* targets, ShadowQueue& queue, RayCount& shadowRays) const;
+  // Adds an event to the signature of a path, where one is asked for.
+  void note(PathSignature& signature, PathEvent event, int bounces, std::uint64_t index,
+    unsigned int outcome) const
+  {
+    if (this->Settings.interleave > 1)
+    {
+      signature += signatureOf(event, bounces, index, outcome);
+    }
+  }
   glm::vec3 transmittance(Ray ray, int bounces, PathSignature& signature) const;
   glm::vec3 throughVeil(
     const SurfacePoint& point, int bounces, PathSignature& signature) const;
-  float shareFromMap(const SurfacePoint& point, std::size_t light) const;
+  float shareFromMap(const glm::dvec3& point, const glm::dvec3& geometricNormal, const Part& part,
+    std::size_t light) const;
 
   const Snapshot& Scene;
   const Structure& Rays;
@@ -99,6 +122,7 @@ private:
   const Surfaces& Points;
   Meetings Sets;
   std::vector<shading::HrtLight> Lights; // positions unset: see lightFrom
+  std::vector<LaneLight> LaneLights; // the same
   std::vector<shading::HrtLight> ViewLights; // in view coordinates, as shadow maps are looked up in
   glm::dmat4 ToView; // from coordinates relative to the scene's origin
   glm::dmat3 NormalsToView;

@@ -80,6 +80,21 @@ float opacityOf(const Part& part, float opacity, float texture)
   return part.material.textures.alpha == Texture::Alpha::Opaque ? opacity : opacity * texture;
 }
 
+// `terms`: what the colours are made from.
+HRT_ALWAYS_INLINE SurfaceColoring coloringOf(const Part& part, std::size_t triangle, std::size_t copy,
+  float u, float v, bool front, shading::HrtTerms& terms)
+{
+  shading::SurfaceColors colors(part, triangle, copy);
+  terms = colors.hrtTermsAt(u, v, front);
+  const glm::vec4 texture = colors.textureColor(u, v, front);
+  SurfaceColoring coloring;
+  coloring.colors = shading::hrtSurface(terms);
+  coloring.textureColor = glm::vec3(texture);
+  coloring.diffuseColor = terms.diffuseColor * coloring.textureColor;
+  coloring.opacity = opacityOf(part, terms.opacity, texture.a);
+  return coloring;
+}
+
 // VTK mixes edges into the colours before it lights them. `axes`: of the window, x, y and towards the
 // viewer, unit.
 void addEdges(shading64::EdgeLookup& edges, const EdgeStyle& style, const glm::dvec3& nearest,
@@ -131,9 +146,22 @@ Surfaces::Surfaces(const Snapshot& snapshot)
   }
 
   this->Placements.reserve(snapshot.parts.size());
-  for (const Part& part : snapshot.parts)
+  this->Plain.resize(snapshot.parts.size());
+  for (std::size_t i = 0; i < snapshot.parts.size(); ++i)
   {
+    const Part& part = snapshot.parts[i];
     this->Placements.push_back(placement(part, snapshot.origin, 0));
+    if (part.geometry->colorSource == ColorSource::Property && !part.copies &&
+      part.material.textures.layers.empty() && part.triangleCount() > 0)
+    {
+      PlainColors& plain = this->Plain[i];
+      for (const bool front : { false, true })
+      {
+        shading::HrtTerms terms;
+        plain.side[front] = coloringOf(part, 0, 0, 0.0f, 0.0f, front, terms);
+      }
+      plain.plain = true;
+    }
   }
 }
 
@@ -145,23 +173,36 @@ Surfaces::Placement Surfaces::placement(
   return { toScene, glm::transpose(glm::inverse(linear)), glm::determinant(linear) < 0.0 };
 }
 
-void Surfaces::Located::locate(const Surfaces& surfaces, TriangleId id)
+void Surfaces::find(TriangleId id, Site& site) const
 {
-  if (id == this->Id)
+  if (id == site.id)
   {
     return;
   }
-  this->Id = id;
-  this->PartIndex = surfaces.Scene.partOf(id);
-  const Part& part = surfaces.Scene.parts[this->PartIndex];
-  this->Place = &surfaces.Placements[this->PartIndex];
-  if (part.copies)
+  site.id = id;
+  if (!site.part || id < site.part->firstTriangle ||
+    id - site.part->firstTriangle >= site.part->triangleCount())
   {
-    this->OfCopy = Surfaces::placement(part, surfaces.Scene.origin, part.copyOf(id));
-    this->Place = &this->OfCopy;
+    site.index = this->Scene.partOf(id);
+    site.part = &this->Scene.parts[site.index];
   }
-  this->Triangle = part.indexOf(id);
-  this->At = sceneCorners(*part.geometry, this->Place->toScene, this->Triangle);
+  site.placement = &this->Placements[site.index];
+  if (site.part->copies)
+  {
+    site.ofCopy = placement(*site.part, this->Scene.origin, site.part->copyOf(id));
+    site.placement = &site.ofCopy;
+  }
+  site.triangle = site.part->indexOf(id);
+}
+
+void Surfaces::Located::locate(const Surfaces& surfaces, TriangleId id)
+{
+  if (id != this->Where.id)
+  {
+    surfaces.find(id, this->Where);
+    this->At = sceneCorners(
+      *this->Where.part->geometry, this->Where.placement->toScene, this->Where.triangle);
+  }
 }
 
 bool Surfaces::primaryHit(TriangleId id, const Ray& ray, Hit& hit) const
@@ -231,16 +272,34 @@ HRT_ALWAYS_INLINE SurfacePoint Surfaces::evaluate(
     ? point.normal
     : shading64::hrtSmoothNormal(smooth, sides.geometricNormal, point.outside);
 
-  shading::SurfaceColors colors(part, triangle, part.copyOf(hit.triangle));
-  const float u = static_cast<float>(hit.u), v = static_cast<float>(hit.v);
-  terms = colors.hrtTermsAt(u, v, point.frontSide);
-  const glm::vec4 texture = colors.textureColor(u, v, point.frontSide);
-  point.colors = shading::hrtSurface(terms);
+  const SurfaceColoring coloring = coloringOf(part, triangle, part.copyOf(hit.triangle),
+    static_cast<float>(hit.u), static_cast<float>(hit.v), point.frontSide, terms);
+  point.colors = coloring.colors;
   point.edgeShare = 0.0f;
-  point.textureColor = glm::vec3(texture);
-  point.diffuseColor = terms.diffuseColor * point.textureColor;
-  point.opacity = opacityOf(part, terms.opacity, texture.a);
+  point.textureColor = coloring.textureColor;
+  point.diffuseColor = coloring.diffuseColor;
+  point.opacity = coloring.opacity;
   return point;
+}
+
+void Surfaces::color(
+  const Site& site, float u, float v, bool front, SurfaceColoring& coloring) const
+{
+  const PlainColors& plain = this->Plain[site.index];
+  if (plain.plain)
+  {
+    coloring = plain.side[front];
+    return;
+  }
+  shading::HrtTerms terms;
+  coloring =
+    coloringOf(*site.part, site.triangle, site.part->copyOf(site.id), u, v, front, terms);
+}
+
+glm::dvec3 Surfaces::startOnBorder(const Site& site, const Hit& hit, double positionError)
+{
+  return insideOf(sceneCorners(*site.part->geometry, site.placement->toScene, site.triangle), hit,
+    kInside * positionError);
 }
 
 SurfacePoint Surfaces::plainAt(

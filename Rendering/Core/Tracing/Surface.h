@@ -9,6 +9,7 @@
 #include "Rendering/Core/Snapshot.h"
 #include "Rendering/Core/Structures/Structure.h"
 
+#include <array>
 #include <vector>
 
 namespace hrt
@@ -49,6 +50,15 @@ struct SurfacePoint
   double twinReach;
 };
 
+// The part of a SurfacePoint that its colours are.
+struct SurfaceColoring
+{
+  shading::HrtSurface colors;
+  glm::vec3 textureColor;
+  glm::vec3 diffuseColor;
+  float opacity;
+};
+
 // How far a ray has come from the camera. Lengths count along the camera's axis, as depths in the window:
 // a pixel at the window's border is as wide as one in its middle.
 struct Way
@@ -65,8 +75,36 @@ class Surfaces
 public:
   explicit Surfaces(const Snapshot& snapshot);
 
+  struct Placement
+  {
+    glm::dmat4 toScene;
+    glm::dmat3 normalsToScene; // inverse transpose
+    bool mirrored;
+  };
+  // Where a triangle is. Kept, it need not be looked for again when its neighbour is asked for.
+  struct Site
+  {
+    Site() = default;
+    Site(const Site&) = delete;
+    Site& operator=(const Site&) = delete;
+
+    TriangleId id = kNoTriangle;
+    std::size_t index = 0;                // of its part
+    const Part* part = nullptr;
+    std::size_t triangle = 0;             // in its part
+    const Placement* placement = nullptr;
+    Placement ofCopy;                     // which has no place in a table
+  };
+  void find(TriangleId id, Site& site) const;
+
   // A triangle with its corners in the scene. Kept, it need not be gathered again.
   class Located;
+
+  // A point's colours. `u` and `v`: of the second and third corner.
+  void color(const Site& site, float u, float v, bool front, SurfaceColoring& coloring) const;
+
+  // SurfacePoint::start of a point next to an edge.
+  static glm::dvec3 startOnBorder(const Site& site, const Hit& hit, double positionError);
 
   // The ray against the plane of a triangle that the rasteriser found, in double, the barycentrics
   // moved into the triangle. False when the plane is seen edge-on or lies behind the ray.
@@ -100,13 +138,6 @@ public:
   bool isHole(const Hit& hit, const glm::dvec3& direction) const;
 
 private:
-  struct Placement
-  {
-    glm::dmat4 toScene;
-    glm::dmat3 normalsToScene; // inverse transpose
-    bool mirrored;
-  };
-
   static Placement placement(const Part& part, const glm::dvec3& origin, std::size_t copy);
   // at(), where the triangle is located; and with the terms that the colours are made from.
   SurfacePoint plainAt(
@@ -116,6 +147,13 @@ private:
 
   const Snapshot& Scene;
   std::vector<Placement> Placements; // one a part, of its first copy
+  // A part's colours, front and back, where they are the same everywhere.
+  struct PlainColors
+  {
+    bool plain = false;
+    std::array<SurfaceColoring, 2> side;
+  };
+  std::vector<PlainColors> Plain;
   Coincidence Twins;
   glm::dmat3 ViewAxes; // of the view coordinates, unit
   glm::dmat4 ToWindow; // from coordinates relative to the scene's origin; pixels and depth, times w
@@ -136,17 +174,15 @@ public:
   // Does nothing where it is that triangle already.
   void locate(const Surfaces& surfaces, TriangleId id);
 
-  std::size_t part() const { return this->PartIndex; }
-  std::size_t triangle() const { return this->Triangle; } // in its part
+  const Site& site() const { return this->Where; }
+  std::size_t part() const { return this->Where.index; }
+  std::size_t triangle() const { return this->Where.triangle; } // in its part
   const Corners& corners() const { return this->At; }
-  const Placement& placement() const { return *this->Place; }
+  const Placement& placement() const { return *this->Where.placement; }
 
 private:
-  TriangleId Id = kNoTriangle;
-  std::size_t PartIndex, Triangle;
+  Site Where;
   Corners At;
-  const Placement* Place;
-  Placement OfCopy; // which has no place in a table
 };
 
 // primaryHit() for a single pixel, without a table.

@@ -42,6 +42,19 @@ TracedFrame::TracedFrame(
   , rays(s.camera.worldRays(s.origin))
   , viewer(glm::dvec3(glm::inverse(s.camera.worldToView)[3]) - s.origin)
 {
+  const glm::dvec3 origins[] = { this->rays.origin0, this->rays.originX, this->rays.originY };
+  const glm::dvec3 directions[] = { this->rays.direction0, this->rays.directionX,
+    this->rays.directionY };
+  for (int i = 0; i < 3; ++i)
+  {
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      this->pixelRays.origin[i][axis] = origins[i][axis];
+      this->pixelRays.direction[i][axis] = directions[i][axis];
+    }
+  }
+  this->pixelRays.width = s.camera.width;
+  this->pixelRays.height = s.camera.height;
 }
 
 bool TracedFrame::isGlass(const Material& material) const
@@ -75,6 +88,7 @@ Ray TracedFrame::primaryRay(std::uint32_t pixel) const
 
 TileTracer::TileTracer(const TracedFrame& frame)
   : Frame(frame)
+  , Block(frame.surfaces)
 {
 }
 
@@ -91,10 +105,7 @@ void TileTracer::trace(const std::vector<std::uint32_t>& pixels, Wanted wanted,
   this->Signatures.assign(pixels.size(), 0);
   this->Sets.clear();
   this->Counters = RayCounters();
-  for (std::size_t i = 0; i < pixels.size(); ++i)
-  {
-    this->start(static_cast<std::uint32_t>(i), pixels[i], wanted, ids, result);
-  }
+  this->start(pixels, wanted, ids, result);
   // Neighbours' first shadow and mirror rays run side by side; later ones scatter.
   RayOrder order = RayOrder::Coherent;
   this->Frame.lighting.flush(this->Shadows, order, this->Sums, this->Signatures);
@@ -132,41 +143,133 @@ bool TileTracer::mayShowOptics(std::uint32_t pixel, const std::uint32_t* ids) co
     });
 }
 
-// The surface that a pixel shows, as the visibility engine has found it.
-void TileTracer::start(std::uint32_t index, std::uint32_t pixel, Wanted wanted,
+// The surfaces that the pixels show, as the visibility engine has found them.
+void TileTracer::start(const std::vector<std::uint32_t>& pixels, Wanted wanted,
   const std::uint32_t* ids, SecondaryResult& result)
 {
-  result.invalidIds += ids[pixel] > this->Frame.snapshot.triangleCount ? 1 : 0;
-  if (wanted == Wanted::SecondaryOnly && !this->mayShowOptics(pixel, ids))
+  const bool everywhere = testsAlways(this->Frame.settings.multisampling);
+  unsigned int count = 0;
+  for (std::size_t i = 0; i < pixels.size(); ++i)
+  {
+    const std::uint32_t id = ids[pixels[i]];
+    const bool valid = id <= this->Frame.snapshot.triangleCount;
+    result.invalidIds += valid ? 0 : 1;
+    if (wanted == Wanted::SecondaryOnly ? this->mayShowOptics(pixels[i], ids)
+                                        : everywhere || (id != 0 && valid))
+    {
+      this->Indices[count] = static_cast<std::uint32_t>(i);
+      this->Block.lanes().pixel[count] = pixels[i];
+      ++count;
+    }
+    if (count == SurfaceBlock::kLanes || (count > 0 && i + 1 == pixels.size()))
+    {
+      this->startBlock(count, wanted, ids, result);
+      count = 0;
+    }
+  }
+}
+
+void TileTracer::startBlock(
+  unsigned int count, Wanted wanted, const std::uint32_t* ids, SecondaryResult& result)
+{
+  this->Block.pixelRays(this->Frame.pixelRays, count);
+  const std::uint32_t* pixels = this->Block.lanes().pixel;
+  unsigned int found = 0;
+  if (this->Frame.settings.multisampling == Multisampling::Clamp)
+  {
+    for (unsigned int lane = 0; lane < count; ++lane)
+    {
+      this->Block.set(lane, ids[pixels[lane]] - 1);
+    }
+    found = this->Block.meet(count);
+  }
+  else
+  {
+    for (unsigned int lane = 0; lane < count; ++lane)
+    {
+      Hit hit;
+      const FirstHits::Outcome outcome = this->Frame.firstHits.find(
+        ids, pixels[lane], this->Block.ray(lane), hit, this->Where, result.multisampling);
+      this->Missed[this->Indices[lane]] = outcome == FirstHits::Outcome::Missed;
+      if (outcome == FirstHits::Outcome::Found)
+      {
+        this->Block.set(lane, hit.triangle);
+        this->Block.setHit(lane, hit);
+        found |= 1u << lane;
+      }
+    }
+  }
+  for (unsigned int lane = 0; lane < count; ++lane)
+  {
+    if (((found >> lane) & 1u) == 0)
+    {
+      continue;
+    }
+    const std::size_t part = this->Block.partIndex(lane);
+    const bool optics = this->Frame.hasOptics(part);
+    if (wanted == Wanted::SecondaryOnly && !optics)
+    {
+      found &= ~(1u << lane);
+      continue;
+    }
+    ++result.interleave.traced;
+    result.pixels += optics ? 1 : 0;
+    const std::uint32_t index = this->Indices[lane];
+    this->Parts[index] = static_cast<std::uint32_t>(part);
+    this->Alphas[index] = wanted == Wanted::Everything ? 1.0f : 0.0f;
+    Path& eye = this->Eyes[lane];
+    eye = Path();
+    eye.pixel = index;
+    if (optics)
+    {
+      eye.way = this->Frame.surfaces.beginning(this->Block.ray(lane).direction,
+        this->Block.hit(lane).t);
+    }
+    if (this->Block.part(lane).showsEdges())
+    {
+      found &= ~(1u << lane);
+      this->startAlone(lane, wanted);
+    }
+  }
+  if (found == 0)
   {
     return;
   }
-  const Ray ray = this->Frame.primaryRay(pixel);
-  Hit hit;
-  Surfaces::Located where;
-  const FirstHits::Outcome outcome =
-    this->Frame.firstHits.find(ids, pixel, ray, hit, where, result.multisampling);
-  this->Missed[index] = outcome == FirstHits::Outcome::Missed;
-  if (outcome != FirstHits::Outcome::Found)
+  // As VTK does for every projection, the viewer of a directly seen surface is taken to be at the
+  // view coordinates' origin.
+  this->Block.evaluate(count, found, &this->Frame.viewer);
+  for (unsigned int lane = 0; lane < count; ++lane)
   {
-    return;
+    if (((found >> lane) & 1u) != 0 && this->Frame.hasOptics(this->Block.partIndex(lane)) &&
+      this->startOptics(this->Block.point(lane), this->Block.ray(lane), this->Block.hit(lane),
+        this->Eyes[lane], wanted))
+    {
+      found &= ~(1u << lane);
+    }
   }
-  const SurfacePoint point =
-    this->Frame.surfaces.seenAtPixel(hit, ray.direction, pixel, where);
-  const Material& material = *point.material;
-  const bool mirror = this->Frame.isMirror(material);
-  const bool optics = mirror || this->Frame.isGlass(material);
-  if (wanted == Wanted::SecondaryOnly && !optics)
+  this->arrive(found, this->Eyes, Kind::Eye);
+}
+
+// A surface with edges.
+void TileTracer::startAlone(unsigned int lane, Wanted wanted)
+{
+  const Ray ray = this->Block.ray(lane);
+  const Hit hit = this->Block.hit(lane);
+  const SurfacePoint point = this->Frame.surfaces.seenAtPixel(
+    hit, ray.direction, this->Block.lanes().pixel[lane], this->Where);
+  if (!this->startOptics(point, ray, hit, this->Eyes[lane], wanted))
   {
-    return;
+    this->arrive(point, ray.direction, glm::normalize(this->Frame.viewer - point.position),
+      this->Eyes[lane], Kind::Eye);
   }
-  ++result.interleave.traced;
-  result.pixels += optics ? 1 : 0;
-  this->Parts[index] = static_cast<std::uint32_t>(point.part);
-  Path eye;
-  eye.pixel = index;
-  eye.way = this->Frame.surfaces.beginning(ray.direction, hit.t);
-  if (this->Frame.isGlass(material))
+}
+
+// What is to be done before a path arrives at the first mirror or glass. True: it does not arrive, only its
+// mirror image is wanted.
+bool TileTracer::startOptics(
+  const SurfacePoint& point, const Ray& ray, const Hit& hit, Path& eye, Wanted wanted)
+{
+  if (this->Frame.isGlass(*point.material))
   {
     // What it lies on, or is twin to, comes next. Rays would have said so; the rasteriser does not.
     std::vector<Hit> members;
@@ -174,19 +277,14 @@ void TileTracer::start(std::uint32_t index, std::uint32_t pixel, Wanted wanted,
     this->Frame.meetings.order(ray.direction, kNoTriangle, members, hit.triangle);
     this->enter(members, eye);
   }
-  if (wanted == Wanted::SecondaryOnly && mirror)
+  if (wanted != Wanted::SecondaryOnly || !this->Frame.isMirror(*point.material))
   {
-    this->Alphas[index] = 1.0f - material.reflectance;
-    this->Signatures[index] +=
-      signatureOf(PathEvent::SeenDirectly, 0, point.part, point.frontSide ? 1 : 0);
-    this->startMirror(point, ray.direction, eye);
-    return;
+    return false;
   }
-  this->Alphas[index] = wanted == Wanted::Everything ? 1.0f : 0.0f;
-  // As VTK does for every projection, the viewer of a directly seen surface is taken to be at the
-  // view coordinates' origin.
-  const glm::dvec3 toViewer = glm::normalize(this->Frame.viewer - point.position);
-  this->arrive(point, ray.direction, toViewer, eye, Kind::Eye);
+  this->Alphas[eye.pixel] = 1.0f - point.material->reflectance;
+  this->note(PathEvent::SeenDirectly, eye, point.part, point.frontSide ? 1 : 0);
+  this->startMirror(point, ray.direction, eye);
+  return true;
 }
 
 void TileTracer::startMirror(
@@ -266,6 +364,15 @@ void TileTracer::follow(PathQueue& queue, Kind kind, RayCount& count, RayOrder o
   }
   this->Hits.resize(kept);
   this->Frame.structure.intersect(queue.rays.data(), this->Hits.data(), kept, order);
+  unsigned int lanes = 0;
+  const auto arriveAtAll = [&]
+  {
+    if (lanes > 0)
+    {
+      this->arriveFrom(lanes, this->Arriving, kind);
+      lanes = 0;
+    }
+  };
   for (std::size_t i = 0; i < kept; ++i)
   {
     Path& path = queue.paths[i];
@@ -281,8 +388,11 @@ void TileTracer::follow(PathQueue& queue, Kind kind, RayCount& count, RayOrder o
       hit = this->firstOfSet(queue.rays[i], hit, path);
     }
     path.way.add(hit.t);
-    this->arrive(this->Frame.surfaces.seenFrom(hit, direction, path.way), direction, -direction,
-      path, kind);
+    this->put(lanes++, hit, direction, path);
+    if (lanes == SurfaceBlock::kLanes)
+    {
+      arriveAtAll();
+    }
   }
   queue.clear();
   for (std::size_t i = 0; i < this->Within.rays.size(); ++i)
@@ -290,11 +400,46 @@ void TileTracer::follow(PathQueue& queue, Kind kind, RayCount& count, RayOrder o
     const Path& path = this->Within.paths[i];
     const Hit& hit = this->Sets[static_cast<std::size_t>(path.set)]
                                [static_cast<std::size_t>(path.member)];
-    const glm::dvec3 direction = this->Within.rays[i].direction;
-    this->arrive(this->Frame.surfaces.seenFrom(hit, direction, path.way), direction, -direction,
-      path, kind);
+    this->put(lanes++, hit, this->Within.rays[i].direction, path);
+    if (lanes == SurfaceBlock::kLanes)
+    {
+      arriveAtAll();
+    }
   }
+  arriveAtAll();
   this->Within.clear();
+}
+
+// Where a path's ray has met a surface.
+void TileTracer::put(
+  unsigned int lane, const Hit& hit, const glm::dvec3& direction, const Path& path)
+{
+  this->Block.set(lane, hit.triangle);
+  this->Block.setHit(lane, hit);
+  this->Block.setRay(lane, direction);
+  this->Arriving[lane] = path;
+}
+
+// The first `count` lanes' rays arrive.
+void TileTracer::arriveFrom(unsigned int count, const Path* paths, Kind kind)
+{
+  unsigned int bits = (1u << count) - 1u;
+  for (unsigned int lane = 0; lane < count; ++lane)
+  {
+    if (this->Block.part(lane).showsEdges())
+    {
+      bits &= ~(1u << lane);
+      const glm::dvec3 direction = this->Block.ray(lane).direction;
+      this->arrive(
+        this->Frame.surfaces.seenFrom(this->Block.hit(lane), direction, paths[lane].way),
+        direction, -direction, paths[lane], kind);
+    }
+  }
+  if (bits != 0)
+  {
+    this->Block.evaluate(count, bits, nullptr);
+    this->arrive(bits, paths, kind);
+  }
 }
 
 // The surface that the ray meets first where it may meet several in one place; the path is among them then.
@@ -308,32 +453,88 @@ Hit TileTracer::firstOfSet(const Ray& ray, const Hit& hit, Path& path)
   return first;
 }
 
-// Adds a surface's own light and sends on the rays that it asks for.
-void TileTracer::arrive(const SurfacePoint& point, const glm::dvec3& direction,
-  const glm::dvec3& toViewer, const Path& path, Kind kind)
+// Adds the light of the block's surfaces and sends on the rays that they ask for.
+void TileTracer::arrive(unsigned int bits, const Path* paths, Kind kind)
 {
-  const PathEvent event = kind == Kind::Eye ? PathEvent::SeenDirectly
-    : kind == Kind::Reflected               ? PathEvent::Reflected
-                                            : PathEvent::Refracted;
-  this->Signatures[path.pixel] +=
-    signatureOf(event, path.bounces, point.part, point.frontSide ? 1 : 0);
-  if (this->Frame.snapshot.parts[point.part].hasDetail())
+  unsigned int together = 0;
+  const Lighting::Target* targets[SurfaceBlock::kLanes] = {};
+  for (; bits != 0; bits &= bits - 1)
+  {
+    const auto lane = static_cast<unsigned int>(__builtin_ctz(bits));
+    const Part& part = this->Block.part(lane);
+    const Path& path = paths[lane];
+    const Material& material = part.material;
+    const bool mirror = this->Frame.isMirror(material);
+    // What is seen directly is never translucent: VTK draws such actors itself.
+    const float opacity = path.bounces == 0 ? 1.0f : this->Block.coloring(lane).opacity;
+    if (this->Frame.isGlass(material) || !Lighting::goesInBlocks(material) || opacity < 1.0f)
+    {
+      const Ray ray = this->Block.ray(lane);
+      this->arrive(this->Block.point(lane), ray.direction,
+        SurfaceBlock::vectorOf(this->Block.lanes().toViewer, lane), path, kind);
+      continue;
+    }
+    this->noteArrival(path, part, this->Block.partIndex(lane), this->Block.isFront(lane), kind);
+    this->Targets[lane].emplace(this->targetOf(path, mirror ? material.reflectance : 0.0f, 1.0f));
+    targets[lane] = &*this->Targets[lane];
+    together |= 1u << lane;
+    if (mirror)
+    {
+      this->startMirror(this->Block.point(lane), this->Block.ray(lane).direction, path);
+    }
+  }
+  if (together != 0)
+  {
+    this->Frame.lighting.shade(
+      this->Block, together, targets, this->Shadows, this->Counters.shadow);
+  }
+}
+
+void TileTracer::noteArrival(
+  const Path& path, const Part& part, std::size_t index, bool front, Kind kind)
+{
+  this->note(kind == Kind::Eye    ? PathEvent::SeenDirectly
+      : kind == Kind::Reflected ? PathEvent::Reflected
+                                : PathEvent::Refracted,
+    path, index, front ? 1 : 0);
+  if (part.hasDetail())
   {
     this->Detailed[path.pixel] = 1;
   }
+}
+
+void TileTracer::note(
+  PathEvent event, const Path& path, std::size_t index, unsigned int outcome)
+{
+  if (this->Frame.settings.interleave > 1) // only interpolation asks
+  {
+    this->Signatures[path.pixel] += signatureOf(event, path.bounces, index, outcome);
+  }
+}
+
+// What the light of a surface at the path's end goes to.
+Lighting::Target TileTracer::targetOf(const Path& path, float mirror, float opacity)
+{
+  return { path.pixel, path.weight * (opacity * (1.0f - mirror)), this->Sums[path.pixel],
+    this->Signatures[path.pixel], path.bounces, path.bounces == 0 && path.layers == 0 };
+}
+
+// The same of one surface.
+void TileTracer::arrive(const SurfacePoint& point, const glm::dvec3& direction,
+  const glm::dvec3& toViewer, const Path& path, Kind kind)
+{
+  this->noteArrival(
+    path, this->Frame.snapshot.parts[point.part], point.part, point.frontSide, kind);
   if (this->Frame.isGlass(*point.material))
   {
     this->arriveAtGlass(point, direction, toViewer, path);
     return;
   }
-  // What is seen directly is never translucent: VTK draws such actors itself.
   const float opacity = path.bounces == 0 ? 1.0f : point.opacity;
   const float mirror =
     this->Frame.isMirror(*point.material) ? point.material->reflectance : 0.0f;
-  const Lighting::Target target{ path.pixel, path.weight * (opacity * (1.0f - mirror)),
-    this->Sums[path.pixel], this->Signatures[path.pixel], path.bounces,
-    path.bounces == 0 && path.layers == 0 };
-  this->Frame.lighting.shade(point, toViewer, target, this->Shadows, this->Counters.shadow);
+  this->Frame.lighting.shade(point, toViewer, this->targetOf(path, mirror, opacity), this->Shadows,
+    this->Counters.shadow);
   if (mirror > 0.0f)
   {
     Path opaque = path;
@@ -397,7 +598,7 @@ void TileTracer::addBackground(
   const glm::dvec3& direction, const Path& path, const glm::vec3& weight)
 {
   this->Sums[path.pixel] += weight * this->background(direction);
-  this->Signatures[path.pixel] += signatureOf(PathEvent::Background, path.bounces, 0, 0);
+  this->note(PathEvent::Background, path, 0, 0);
 }
 
 glm::vec3 TileTracer::background(const glm::dvec3& direction) const

@@ -13,6 +13,7 @@
 #include "Rendering/Core/Tracing/Tracer.h"
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 namespace hrt
@@ -30,8 +31,6 @@ struct TracedFrame
 
   // The primary ray through the centre of a pixel, row 0 at the bottom; unit direction.
   Ray primaryRay(std::uint32_t pixel) const;
-  // That centre, in pixels from the picture's lower left corner.
-
   const Snapshot& snapshot;
   const Structure& structure;
   const TracerSettings& settings;
@@ -41,6 +40,7 @@ struct TracedFrame
   FirstHits firstHits;
   Lighting lighting;
   CameraRays rays;
+  PixelRays pixelRays; // the same, for blocks of pixels
   glm::dvec3 viewer; // the view coordinates' origin, relative to the scene's
 };
 
@@ -98,21 +98,33 @@ private:
     }
   };
 
-  void start(std::uint32_t index, std::uint32_t pixel, Wanted wanted, const std::uint32_t* ids,
-    SecondaryResult& result);
-  bool mayShowOptics(std::uint32_t pixel, const std::uint32_t* ids) const;
-  void startMirror(const SurfacePoint& point, const glm::dvec3& direction, const Path& path);
-  void enter(std::vector<Hit>& members, Path& path);
-  Hit firstOfSet(const Ray& ray, const Hit& hit, Path& path);
-  void turnOn(Path& path, bool back) const;
   enum class Kind
   {
     Eye,
     Reflected,
     Refracted
   };
+  void start(const std::vector<std::uint32_t>& pixels, Wanted wanted, const std::uint32_t* ids,
+    SecondaryResult& result);
+  void startBlock(
+    unsigned int count, Wanted wanted, const std::uint32_t* ids, SecondaryResult& result);
+  void startAlone(unsigned int lane, Wanted wanted);
+  bool startOptics(
+    const SurfacePoint& point, const Ray& ray, const Hit& hit, Path& eye, Wanted wanted);
+  bool mayShowOptics(std::uint32_t pixel, const std::uint32_t* ids) const;
+  void startMirror(const SurfacePoint& point, const glm::dvec3& direction, const Path& path);
+  void enter(std::vector<Hit>& members, Path& path);
+  Hit firstOfSet(const Ray& ray, const Hit& hit, Path& path);
+  void turnOn(Path& path, bool back) const;
+  void put(unsigned int lane, const Hit& hit, const glm::dvec3& direction, const Path& path);
+  void arriveFrom(unsigned int count, const Path* paths, Kind kind);
+  void arrive(unsigned int bits, const Path* paths, Kind kind);
   void arrive(const SurfacePoint& point, const glm::dvec3& direction,
     const glm::dvec3& toViewer, const Path& path, Kind kind);
+  Lighting::Target targetOf(const Path& path, float mirror, float opacity);
+  void noteArrival(
+    const Path& path, const Part& part, std::size_t index, bool front, Kind kind);
+  void note(PathEvent event, const Path& path, std::size_t index, unsigned int outcome);
   void arriveAtGlass(const SurfacePoint& point, const glm::dvec3& direction,
     const glm::dvec3& toViewer, const Path& path);
   void passThrough(const SurfacePoint& point, const glm::dvec3& direction, const Path& path,
@@ -124,6 +136,11 @@ private:
   glm::vec3 background(const glm::dvec3& direction) const;
 
   const TracedFrame& Frame;
+  SurfaceBlock Block;
+  Path Eyes[SurfaceBlock::kLanes], Arriving[SurfaceBlock::kLanes]; // of the block's lanes
+  std::uint32_t Indices[SurfaceBlock::kLanes];                    // into the tile's list
+  std::optional<Lighting::Target> Targets[SurfaceBlock::kLanes];
+  Surfaces::Located Where;
   std::vector<glm::vec3> Sums;
   std::vector<float> Alphas;
   std::vector<std::uint32_t> Parts;

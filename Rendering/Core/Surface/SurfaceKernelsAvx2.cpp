@@ -1,0 +1,4 @@
+// The kernels for one instruction set: see CMakeLists.txt for the compiler's options.
+#define HRT_LANES_NAMESPACE lanes_avx2
+#define HRT_KERNEL_TABLE kSurfaceKernelsAvx2
+#include "Rendering/Core/Surface/SurfaceLanes.h"
