@@ -74,6 +74,12 @@ struct PixelRays
   double width, height;
 };
 
+// The rows of z and w of the matrix to clip space, from the scene's coordinates.
+struct ClipRows
+{
+  double z[4], w[4];
+};
+
 // A light as shading and shadow rays take it, the same for all points.
 struct LaneLight
 {
@@ -94,6 +100,11 @@ struct SurfaceKernels
 {
   // Rays from pixels.
   void (*pixelRays)(const PixelRays& camera, SurfaceLanes& lanes);
+  // Cuts rays from the camera by the near and the far plane: ClipPlanes::between. Moves their origins; `t`
+  // becomes what is left of them. Bits of those of which something is.
+  unsigned int (*clip)(const ClipRows& planes, SurfaceLanes& lanes);
+  // ClipPlanes::depth at `t` of the rays, in `t`.
+  void (*depths)(const ClipRows& planes, SurfaceLanes& lanes);
   // Where the rays meet their triangles, as primaryHit says it. Bits of those that do.
   unsigned int (*meet)(SurfaceLanes& lanes);
   // The surfaces there, all but `start`, which is the position unless that is on the border.

@@ -148,6 +148,48 @@ void pixelRays(const PixelRays& camera, SurfaceLanes& lanes)
   normalize(affine(camera.direction)).store(lanes.direction);
 }
 
+// A row of the matrix times a vector, in GLM's order.
+HRT_INLINE Doubles rowTimes(const double (&row)[4], const vec3& v, double last)
+{
+  return (Doubles(row[0]) * v.x + Doubles(row[1]) * v.y) +
+    (Doubles(row[2]) * v.z + Doubles(row[3]) * Doubles(last));
+}
+
+unsigned int clip(const ClipRows& planes, SurfaceLanes& lanes)
+{
+  const vec3 origin = vec3::load(lanes.origin), direction = vec3::load(lanes.direction);
+  const Doubles fromZ = rowTimes(planes.z, origin, 1.0), fromW = rowTimes(planes.w, origin, 1.0);
+  const Doubles alongZ = rowTimes(planes.z, direction, 0.0),
+                alongW = rowTimes(planes.w, direction, 0.0);
+  const Doubles zero(0.0), one(1.0);
+  Doubles first = zero, last(kInfinity);
+  Mask open = !(zero < zero);
+  const double sides[] = { 1.0, -1.0 };
+  for (const double side : sides)
+  {
+    const Doubles start = fromW + Doubles(side) * fromZ, slope = alongW + Doubles(side) * alongZ;
+    const Mask rises = slope > zero, falls = slope < zero, neither = !(rises | falls);
+    const Doubles at = -start / select(neither, one, slope);
+    first = select(rises, max(first, at), first);
+    last = select(falls, min(last, at), last);
+    open = open & !(neither & (start < zero));
+  }
+  open = open & (first < last);
+  // What is left of no ray goes nowhere, whatever it is.
+  first = select(open, first, zero);
+  (origin + first * direction).store(lanes.origin);
+  (last - first).store(lanes.t);
+  return bitsOf(open);
+}
+
+void depths(const ClipRows& planes, SurfaceLanes& lanes)
+{
+  const vec3 position =
+    vec3::load(lanes.origin) + Doubles::load(lanes.t) * vec3::load(lanes.direction);
+  const Doubles depth = rowTimes(planes.z, position, 1.0) / rowTimes(planes.w, position, 1.0);
+  clamp(depth, Doubles(-1.0), Doubles(1.0)).store(lanes.t);
+}
+
 HRT_INLINE Doubles differenceOfProducts(
   const Doubles& a, const Doubles& b, const Doubles& c, const Doubles& d)
 {
@@ -304,7 +346,7 @@ unsigned int shadowRays(const LaneLight& light, SurfaceLanes& lanes)
 
 extern const SurfaceKernels HRT_KERNEL_TABLE;
 const SurfaceKernels HRT_KERNEL_TABLE = { &HRT_LANES_NAMESPACE::pixelRays,
-  &HRT_LANES_NAMESPACE::meet, &HRT_LANES_NAMESPACE::surface, &HRT_LANES_NAMESPACE::shade,
+  &HRT_LANES_NAMESPACE::clip, &HRT_LANES_NAMESPACE::depths, &HRT_LANES_NAMESPACE::meet, &HRT_LANES_NAMESPACE::surface, &HRT_LANES_NAMESPACE::shade,
   &HRT_LANES_NAMESPACE::shadowRays };
 
 } // namespace hrt

@@ -15,6 +15,8 @@ public:
   // Both must outlive it.
   CameraOrder(const Snapshot& snapshot, const Surfaces& surfaces);
 
+  bool anyOffset() const { return this->AnyOffset; }
+
   // Offsets may bring a surface before another that is nearer.
   bool offsetsMatter() const { return this->OffsetsDiffer; }
 

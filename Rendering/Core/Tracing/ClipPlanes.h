@@ -3,6 +3,7 @@
 
 #include "Rendering/Core/Snapshot.h"
 #include "Rendering/Core/Structures/Structure.h"
+#include "Rendering/Core/Surface/SurfaceKernels.h"
 
 #include <algorithm>
 
@@ -51,6 +52,18 @@ public:
   {
     const glm::dvec4 clip = this->ToClip * glm::dvec4(position, 1.0);
     return glm::clamp(clip.z / clip.w, -1.0, 1.0);
+  }
+
+  // For lanes.
+  ClipRows rows() const
+  {
+    ClipRows rows;
+    for (int column = 0; column < 4; ++column)
+    {
+      rows.z[column] = this->ToClip[column][2];
+      rows.w[column] = this->ToClip[column][3];
+    }
+    return rows;
   }
 
 private:

@@ -25,38 +25,52 @@ public:
   PrimaryCaster(const TracedFrame& frame, PrimaryHits& hits)
     : Frame(frame)
     , Hits(hits)
-    , Planes(frame.snapshot)
+    , Planes(ClipPlanes(frame.snapshot).rows())
   {
-  }
-
-  // A ray cut by the near and the far plane; false when nothing is left of it.
-  bool clip(Ray& ray) const
-  {
-    double first = 0.0, last = 0.0;
-    if (!this->Planes.between(ray, first, last))
+    const bool offsets = frame.cameraOrder.anyOffset();
+    for (const Part& part : frame.snapshot.parts)
     {
-      return false;
+      const Material& material = part.material;
+      this->Plain.push_back(!offsets && part.visibleToCamera && !part.perforated &&
+        !material.cullFront && !material.cullBack);
     }
-    ray.origin += first * ray.direction;
-    ray.tMaximum = last - first;
-    return true;
   }
 
   void cast(const std::vector<std::uint32_t>& pixels, RayCount& count)
   {
     this->Rays.clear();
     this->Pixels.clear();
-    for (const std::uint32_t pixel : pixels)
+    for (std::size_t i = 0; i < pixels.size(); i += kSurfaceLanes)
     {
-      this->add(pixel, count);
+      this->add(pixels.data() + i, std::min<std::size_t>(kSurfaceLanes, pixels.size() - i), count);
     }
     this->Found.resize(this->Rays.size());
     this->Frame.structure.intersect(
       this->Rays.data(), this->Found.data(), this->Rays.size(), RayOrder::Coherent);
+    unsigned int lanes = 0;
+    std::uint32_t shown[kSurfaceLanes];
     for (std::size_t i = 0; i < this->Rays.size(); ++i)
     {
-      this->store(this->Pixels[i], this->Rays[i], this->Found[i], count);
+      const Hit& hit = this->Found[i];
+      if (!hit.valid())
+      {
+        continue;
+      }
+      if (hit.shared || !this->isPlain(hit.triangle))
+      {
+        this->store(this->Pixels[i], this->Rays[i], hit, count);
+        continue;
+      }
+      this->Hits.ids[this->Pixels[i]] = hit.triangle + 1;
+      shown[lanes] = this->Pixels[i];
+      this->put(lanes++, this->Rays[i], hit);
+      if (lanes == kSurfaceLanes)
+      {
+        this->storeDepths(shown, lanes);
+        lanes = 0;
+      }
     }
+    this->storeDepths(shown, lanes);
   }
 
   // A pixel between samples from what they show; false when its own ray has to decide. A triangle is
@@ -96,19 +110,65 @@ private:
     return id != 0 && scene.parts[scene.partOf(id - 1)].perforated;
   }
 
-  void add(std::uint32_t pixel, RayCount& count)
+  // The rays of so many pixels, one to kSurfaceLanes.
+  void add(const std::uint32_t* pixels, std::size_t given, RayCount& count)
   {
-    ++count.asked;
-    Ray ray = this->Frame.primaryRay(pixel);
-    if (this->clip(ray))
+    for (std::size_t lane = 0; lane < kSurfaceLanes; ++lane)
     {
-      ++count.traced;
-      this->Rays.push_back(ray);
-      this->Pixels.push_back(pixel);
+      this->Lanes.pixel[lane] = pixels[lane < given ? lane : 0];
     }
-    else
+    this->Kernels.pixelRays(this->Frame.pixelRays, this->Lanes);
+    const unsigned int open = this->Kernels.clip(this->Planes, this->Lanes);
+    for (unsigned int lane = 0; lane < given; ++lane)
     {
-      ++count.answered;
+      ++count.asked;
+      if (((open >> lane) & 1u) == 0)
+      {
+        ++count.answered;
+        continue;
+      }
+      ++count.traced;
+      Ray ray;
+      ray.origin = SurfaceBlock::vectorOf(this->Lanes.origin, lane);
+      ray.direction = SurfaceBlock::vectorOf(this->Lanes.direction, lane);
+      ray.tMaximum = this->Lanes.t[lane];
+      this->Rays.push_back(ray);
+      this->Pixels.push_back(pixels[lane]);
+    }
+  }
+
+  // Whether a hit on it is what the camera is shown if it is the nearest, at the depth where it is.
+  bool isPlain(TriangleId triangle)
+  {
+    this->Frame.surfaces.findPart(triangle, this->Site);
+    return this->Plain[this->Site.index] != 0;
+  }
+
+  void put(unsigned int lane, const Ray& ray, const Hit& hit)
+  {
+    SurfaceBlock::setVector(this->Lanes.origin, lane, ray.origin);
+    SurfaceBlock::setVector(this->Lanes.direction, lane, ray.direction);
+    this->Lanes.t[lane] = hit.t;
+  }
+
+  void storeDepths(const std::uint32_t* pixels, unsigned int count)
+  {
+    if (count == 0)
+    {
+      return;
+    }
+    for (unsigned int lane = count; lane < kSurfaceLanes; ++lane)
+    {
+      SurfaceBlock::setVector(
+        this->Lanes.origin, lane, SurfaceBlock::vectorOf(this->Lanes.origin, 0));
+      SurfaceBlock::setVector(
+        this->Lanes.direction, lane, SurfaceBlock::vectorOf(this->Lanes.direction, 0));
+      this->Lanes.t[lane] = this->Lanes.t[0];
+    }
+    this->Kernels.depths(this->Planes, this->Lanes);
+    for (unsigned int lane = 0; lane < count; ++lane)
+    {
+      this->Hits.clipDepths[pixels[lane]] = this->Lanes.t[lane];
     }
   }
 
@@ -188,7 +248,11 @@ private:
 
   const TracedFrame& Frame;
   PrimaryHits& Hits;
-  ClipPlanes Planes;
+  ClipRows Planes;
+  const SurfaceKernels& Kernels = surfaceKernelsFor(bestInstructionSet());
+  SurfaceLanes Lanes;
+  Surfaces::Site Site;
+  std::vector<std::uint8_t> Plain; // of the parts: see isPlain
   std::vector<Ray> Rays;
   std::vector<std::uint32_t> Pixels;
   std::vector<Hit> Found;
@@ -198,6 +262,10 @@ private:
 // A thread's own.
 struct Local
 {
+  Local(const TracedFrame& frame, PrimaryHits& hits)
+    : caster(frame, hits)
+  {
+  }
   PrimaryCaster caster;
   RayCount count;
   std::vector<std::uint32_t> pixels;
@@ -241,7 +309,7 @@ RayCounters castPrimaryRays(const Snapshot& snapshot, const Structure& structure
   const TracedFrame frame(snapshot, structure, settings);
   const Lattice lattice(camera, settings.interleave);
   tbb::enumerable_thread_specific<Local> locals(
-    [&] { return Local{ PrimaryCaster(frame, hits), {}, {} }; });
+    [&] { return Local(frame, hits); });
   const PixelBounds bounds = settings.bounds.within(camera.width, camera.height);
   forEachTile(lattice.samplesWithin(bounds), locals,
     [&](Local& local, const TileSpan& columns, const TileSpan& rows) {

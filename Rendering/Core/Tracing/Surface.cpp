@@ -173,6 +173,16 @@ Surfaces::Placement Surfaces::placement(
   return { toScene, glm::transpose(glm::inverse(linear)), glm::determinant(linear) < 0.0 };
 }
 
+void Surfaces::findPart(TriangleId id, Site& site) const
+{
+  if (!site.part || id < site.part->firstTriangle ||
+    id - site.part->firstTriangle >= site.part->triangleCount())
+  {
+    site.index = this->Scene.partOf(id);
+    site.part = &this->Scene.parts[site.index];
+  }
+}
+
 void Surfaces::find(TriangleId id, Site& site) const
 {
   if (id == site.id)
@@ -180,12 +190,7 @@ void Surfaces::find(TriangleId id, Site& site) const
     return;
   }
   site.id = id;
-  if (!site.part || id < site.part->firstTriangle ||
-    id - site.part->firstTriangle >= site.part->triangleCount())
-  {
-    site.index = this->Scene.partOf(id);
-    site.part = &this->Scene.parts[site.index];
-  }
+  this->findPart(id, site);
   site.placement = &this->Placements[site.index];
   if (site.part->copies)
   {

@@ -96,6 +96,8 @@ public:
     Placement ofCopy;                     // which has no place in a table
   };
   void find(TriangleId id, Site& site) const;
+  // Of that only the part.
+  void findPart(TriangleId id, Site& site) const;
 
   // A triangle with its corners in the scene. Kept, it need not be gathered again.
   class Located;
