@@ -105,8 +105,10 @@ struct SurfaceKernels
   unsigned int (*clip)(const ClipRows& planes, SurfaceLanes& lanes);
   // ClipPlanes::depth at `t` of the rays, in `t`.
   void (*depths)(const ClipRows& planes, SurfaceLanes& lanes);
-  // Where the rays meet their triangles, as primaryHit says it. Bits of those that do.
+  // Where the rays meet their triangles: in their planes, moved into them, as primaryHit says it, or by the
+  // exact test. Bits of those that do.
   unsigned int (*meet)(SurfaceLanes& lanes);
+  unsigned int (*meetExactly)(SurfaceLanes& lanes);
   // The surfaces there, all but `start`, which is the position unless that is on the border.
   void (*surface)(SurfaceLanes& lanes);
   // What a light adds without shadow. Bits: where that is not zero.

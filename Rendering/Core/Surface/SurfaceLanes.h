@@ -197,7 +197,15 @@ HRT_INLINE Doubles differenceOfProducts(
   return fused(a, b, -product) + fused(-c, d, product);
 }
 
-// ShearedRay::hitsPlane, and what hitPrimary makes of it.
+// Some of them zero counts for both sides.
+HRT_INLINE Mask agree(const Doubles& a, const Doubles& b, const Doubles& c)
+{
+  const Doubles zero(0.0);
+  return ((a >= zero) & (b >= zero) & (c >= zero)) | ((a <= zero) & (b <= zero) & (c <= zero));
+}
+
+// ShearedRay::hitsTriangle, or hitsPlane and what hitPrimary makes of it.
+template <bool kExactly>
 unsigned int meet(SurfaceLanes& lanes)
 {
   const LaneCorners corners = cornersOf(lanes);
@@ -220,6 +228,7 @@ unsigned int meet(SurfaceLanes& lanes)
   const Doubles cx = c.x - shearX * c.z, cy = c.y - shearY * c.z;
   const Doubles a0 = cx * by, a1 = cy * bx, b0 = ax * cy, b1 = ay * cx, c0 = bx * ay, c1 = by * ax;
   Doubles ofA = a0 - a1, ofB = b0 - b1, ofC = c0 - c1;
+  const Mask maybe = agree(ofA, ofB, ofC);
   const Doubles products = abs(a0) + abs(a1) + abs(b0) + abs(b1) + abs(c0) + abs(c1);
   const Mask kept = abs(ofA + ofB + ofC) >= Doubles(kCancelledShare) * products;
   if (any(!kept))
@@ -234,8 +243,14 @@ unsigned int meet(SurfaceLanes& lanes)
   const Doubles infinity(kInfinity);
   const Mask met = (abs(t) < infinity) & (abs(u) < infinity) & (abs(v) < infinity) &
     (t > Doubles(0.0));
-  const doubles::vec2 inside = doubles::hrtClampBarycentrics(u, v);
   t.store(lanes.t);
+  if (kExactly)
+  {
+    u.store(lanes.u);
+    v.store(lanes.v);
+    return bitsOf(met & maybe & agree(ofA, ofB, ofC));
+  }
+  const doubles::vec2 inside = doubles::hrtClampBarycentrics(u, v);
   inside.x.store(lanes.u);
   inside.y.store(lanes.v);
   return bitsOf(met);
@@ -346,7 +361,8 @@ unsigned int shadowRays(const LaneLight& light, SurfaceLanes& lanes)
 
 extern const SurfaceKernels HRT_KERNEL_TABLE;
 const SurfaceKernels HRT_KERNEL_TABLE = { &HRT_LANES_NAMESPACE::pixelRays,
-  &HRT_LANES_NAMESPACE::clip, &HRT_LANES_NAMESPACE::depths, &HRT_LANES_NAMESPACE::meet, &HRT_LANES_NAMESPACE::surface, &HRT_LANES_NAMESPACE::shade,
+  &HRT_LANES_NAMESPACE::clip, &HRT_LANES_NAMESPACE::depths, &HRT_LANES_NAMESPACE::meet<false>,
+  &HRT_LANES_NAMESPACE::meet<true>, &HRT_LANES_NAMESPACE::surface, &HRT_LANES_NAMESPACE::shade,
   &HRT_LANES_NAMESPACE::shadowRays };
 
 } // namespace hrt

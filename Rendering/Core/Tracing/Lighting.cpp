@@ -38,10 +38,10 @@ void forEachBit(unsigned int bits, Visit visit)
 }
 
 // VTK multiplies textures with what is shaded, ambient light and highlights among it.
-Lighting::Target textured(const Lighting::Target& target, const SurfacePoint& point)
+Lighting::Target textured(const Lighting::Target& target, const glm::vec3& texture)
 {
   Lighting::Target t = target;
-  t.weight *= point.textureColor;
+  t.weight *= texture;
   return t;
 }
 
@@ -105,7 +105,7 @@ shading::HrtLight Lighting::lightFrom(const SurfacePoint& point, std::size_t ind
 void Lighting::shade(const SurfacePoint& point, const glm::dvec3& toViewer,
   const Target& untextured, ShadowQueue& queue, RayCount& shadowRays) const
 {
-  const Target target = textured(untextured, point);
+  const Target target = textured(untextured, point.textureColor);
   if (!point.material->lit || this->Scene.lights.empty())
   {
     target.sum += target.weight * shading::hrtUnlit(point.colors);
@@ -184,7 +184,7 @@ void Lighting::shadePhysically(const SurfacePoint& point, const glm::dvec3& toVi
 void Lighting::highlights(const SurfacePoint& point, const glm::dvec3& toViewer,
   const Target& untextured, ShadowQueue& queue, RayCount& shadowRays) const
 {
-  const Target target = textured(untextured, point);
+  const Target target = textured(untextured, point.textureColor);
   if (!point.material->lit)
   {
     return;
@@ -247,24 +247,40 @@ void Lighting::addLights(const SurfacePoint& point, const shading::HrtSurface& c
 void Lighting::shade(SurfaceBlock& block, unsigned int bits, const Target* const* targets,
   ShadowQueue& queue, RayCount& shadowRays) const
 {
+  forEachBit(bits,
+    [&](unsigned int lane)
+    {
+      const SurfaceColoring& coloring = block.coloring(lane);
+      const Target target = textured(*targets[lane], coloring.textureColor);
+      target.sum += target.weight *
+        (this->Scene.lights.empty() ? shading::hrtUnlit(coloring.colors)
+                                    : coloring.colors.ambient);
+    });
+  this->addLights(block, bits, true, targets, queue, shadowRays);
+}
+
+void Lighting::highlights(SurfaceBlock& block, unsigned int bits, const Target* const* targets,
+  ShadowQueue& queue, RayCount& shadowRays) const
+{
+  this->addLights(block, bits, false, targets, queue, shadowRays);
+}
+
+void Lighting::addLights(SurfaceBlock& block, unsigned int bits, bool diffuse,
+  const Target* const* targets, ShadowQueue& queue, RayCount& shadowRays) const
+{
   SurfaceLanes& lanes = block.lanes();
   const auto first = static_cast<unsigned int>(__builtin_ctz(bits));
   for (unsigned int lane = 0; lane < SurfaceBlock::kLanes; ++lane)
   {
     const unsigned int of = ((bits >> lane) & 1u) != 0 ? lane : first;
     const SurfaceColoring& coloring = block.coloring(of);
-    SurfaceBlock::setVector(lanes.diffuse, lane, coloring.colors.diffuse);
+    SurfaceBlock::setVector(
+      lanes.diffuse, lane, diffuse ? coloring.colors.diffuse : glm::vec3(0.0f));
     SurfaceBlock::setVector(lanes.specular, lane, coloring.colors.specular);
     lanes.power[lane] = coloring.colors.power;
-    const glm::vec3 weight = targets[of]->weight * coloring.textureColor;
-    SurfaceBlock::setVector(lanes.weight, lane, weight);
+    SurfaceBlock::setVector(
+      lanes.weight, lane, textured(*targets[of], coloring.textureColor).weight);
     lanes.twinReach[lane] = this->Points.coincidence().twinReach(block.partIndex(of));
-    if (of == lane)
-    {
-      targets[lane]->sum += weight *
-        (this->Scene.lights.empty() ? shading::hrtUnlit(coloring.colors)
-                                    : coloring.colors.ambient);
-    }
   }
   for (std::size_t i = 0; i < this->Lights.size(); ++i)
   {

@@ -71,6 +71,10 @@ public:
   void highlights(const SurfacePoint& point, const glm::dvec3& toViewer, const Target& target,
     ShadowQueue& queue, RayCount& shadowRays) const;
 
+  // Likewise side by side, of lit surfaces.
+  void highlights(SurfaceBlock& block, unsigned int bits, const Target* const* targets,
+    ShadowQueue& queue, RayCount& shadowRays) const;
+
   // Traces the queue's rays and adds what passes; the queue is empty afterwards.
   void flush(ShadowQueue& queue, RayOrder order, std::vector<glm::vec3>& sums,
     std::vector<PathSignature>& signatures) const;
@@ -98,6 +102,9 @@ private:
     Open     // `ray` has to be traced
   };
   Sight sight(const SurfacePoint& point, const Light& light, Ray& ray) const;
+  // The lights of the block's lanes, with or without their diffuse parts.
+  void addLights(SurfaceBlock& block, unsigned int bits, bool diffuse,
+    const Target* const* targets, ShadowQueue& queue, RayCount& shadowRays) const;
   // What becomes of the portions that the block's lanes get of a light.
   void addPortions(SurfaceBlock& block, unsigned int bits, unsigned int shining, std::size_t light,
     const Target* const* targets, ShadowQueue& queue, RayCount& shadowRays) const;

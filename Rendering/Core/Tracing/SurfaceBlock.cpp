@@ -82,13 +82,14 @@ void SurfaceBlock::repeat(unsigned int lane, unsigned int of)
   l.v[lane] = l.v[of];
 }
 
-unsigned int SurfaceBlock::meet(unsigned int count)
+unsigned int SurfaceBlock::meet(unsigned int count, bool exactly)
 {
   for (unsigned int lane = count; lane < kLanes; ++lane)
   {
     this->repeat(lane, 0);
   }
-  return this->Kernels.meet(this->Lanes) & ((1u << count) - 1u);
+  return (exactly ? this->Kernels.meetExactly : this->Kernels.meet)(this->Lanes) &
+    ((1u << count) - 1u);
 }
 
 void SurfaceBlock::evaluate(unsigned int count, unsigned int bits, const glm::dvec3* eye)

@@ -29,8 +29,8 @@ public:
   void set(unsigned int lane, TriangleId triangle);
   void setHit(unsigned int lane, const Hit& hit);
 
-  // primaryHit of the first `count` lanes, which have rays and triangles. Bits of those that meet.
-  unsigned int meet(unsigned int count);
+  // primaryHit, or exactHit, of the first `count` lanes, which have rays and triangles. Bits of those that meet.
+  unsigned int meet(unsigned int count, bool exactly);
   Hit hit(unsigned int lane) const;
 
   // The surfaces of those of the first `count` lanes, `bits` not zero, without edges. Seen from `eye`, or,

@@ -154,8 +154,8 @@ void TileTracer::start(const std::vector<std::uint32_t>& pixels, Wanted wanted,
     const std::uint32_t id = ids[pixels[i]];
     const bool valid = id <= this->Frame.snapshot.triangleCount;
     result.invalidIds += valid ? 0 : 1;
-    if (wanted == Wanted::SecondaryOnly ? this->mayShowOptics(pixels[i], ids)
-                                        : everywhere || (id != 0 && valid))
+    if ((everywhere || (id != 0 && valid)) &&
+      (wanted == Wanted::Everything || this->mayShowOptics(pixels[i], ids)))
     {
       this->Indices[count] = static_cast<std::uint32_t>(i);
       this->Block.lanes().pixel[count] = pixels[i];
@@ -174,18 +174,19 @@ void TileTracer::startBlock(
 {
   this->Block.pixelRays(this->Frame.pixelRays, count);
   const std::uint32_t* pixels = this->Block.lanes().pixel;
+  const Multisampling mode = this->Frame.settings.multisampling;
   unsigned int found = 0;
-  if (this->Frame.settings.multisampling == Multisampling::Clamp)
+  if (!testsAlways(mode))
   {
     for (unsigned int lane = 0; lane < count; ++lane)
     {
       this->Block.set(lane, ids[pixels[lane]] - 1);
     }
-    found = this->Block.meet(count);
+    found = this->Block.meet(count, mode != Multisampling::Clamp);
   }
-  else
+  for (unsigned int lane = 0; lane < count && mode != Multisampling::Clamp; ++lane)
   {
-    for (unsigned int lane = 0; lane < count; ++lane)
+    if (((found >> lane) & 1u) == 0)
     {
       Hit hit;
       const FirstHits::Outcome outcome = this->Frame.firstHits.find(
@@ -456,7 +457,7 @@ Hit TileTracer::firstOfSet(const Ray& ray, const Hit& hit, Path& path)
 // Adds the light of the block's surfaces and sends on the rays that they ask for.
 void TileTracer::arrive(unsigned int bits, const Path* paths, Kind kind)
 {
-  unsigned int together = 0;
+  unsigned int together = 0, glass = 0;
   const Lighting::Target* targets[SurfaceBlock::kLanes] = {};
   for (; bits != 0; bits &= bits - 1)
   {
@@ -467,7 +468,19 @@ void TileTracer::arrive(unsigned int bits, const Path* paths, Kind kind)
     const bool mirror = this->Frame.isMirror(material);
     // What is seen directly is never translucent: VTK draws such actors itself.
     const float opacity = path.bounces == 0 ? 1.0f : this->Block.coloring(lane).opacity;
-    if (this->Frame.isGlass(material) || !Lighting::goesInBlocks(material) || opacity < 1.0f)
+    if (this->Frame.isGlass(material))
+    {
+      this->noteArrival(path, part, this->Block.partIndex(lane), this->Block.isFront(lane), kind);
+      this->sendThroughGlass(this->Block.point(lane), this->Block.ray(lane).direction, path);
+      if (material.lit)
+      {
+        this->Targets[lane].emplace(this->highlightOf(path));
+        targets[lane] = &*this->Targets[lane];
+        glass |= 1u << lane;
+      }
+      continue;
+    }
+    if (!Lighting::goesInBlocks(material) || opacity < 1.0f)
     {
       const Ray ray = this->Block.ray(lane);
       this->arrive(this->Block.point(lane), ray.direction,
@@ -487,6 +500,11 @@ void TileTracer::arrive(unsigned int bits, const Path* paths, Kind kind)
   {
     this->Frame.lighting.shade(
       this->Block, together, targets, this->Shadows, this->Counters.shadow);
+  }
+  if (glass != 0)
+  {
+    this->Frame.lighting.highlights(
+      this->Block, glass, targets, this->Shadows, this->Counters.shadow);
   }
 }
 
@@ -517,6 +535,13 @@ Lighting::Target TileTracer::targetOf(const Path& path, float mirror, float opac
 {
   return { path.pixel, path.weight * (opacity * (1.0f - mirror)), this->Sums[path.pixel],
     this->Signatures[path.pixel], path.bounces, path.bounces == 0 && path.layers == 0 };
+}
+
+// The highlights on glass are no matter of shadow maps.
+Lighting::Target TileTracer::highlightOf(const Path& path)
+{
+  return { path.pixel, path.weight, this->Sums[path.pixel], this->Signatures[path.pixel],
+    path.bounces };
 }
 
 // The same of one surface.
@@ -564,16 +589,20 @@ void TileTracer::passThrough(const SurfacePoint& point, const glm::dvec3& direct
   sameKind.paths.push_back(next);
 }
 
-// Without reflections the light that glass would reflect goes the way of the refracted; where
-// everything is reflected nothing is left.
 void TileTracer::arriveAtGlass(const SurfacePoint& point, const glm::dvec3& direction,
   const glm::dvec3& toViewer, const Path& path)
 {
+  this->Frame.lighting.highlights(
+    point, toViewer, this->highlightOf(path), this->Shadows, this->Counters.shadow);
+  this->sendThroughGlass(point, direction, path);
+}
+
+// Without reflections the light that glass would reflect goes the way of the refracted; where
+// everything is reflected nothing is left.
+void TileTracer::sendThroughGlass(
+  const SurfacePoint& point, const glm::dvec3& direction, const Path& path)
+{
   const Boundary boundary = boundaryAt(point, direction);
-  this->Frame.lighting.highlights(point, toViewer,
-    { path.pixel, path.weight, this->Sums[path.pixel], this->Signatures[path.pixel],
-      path.bounces },
-    this->Shadows, this->Counters.shadow);
   const bool reflections = this->Frame.settings.reflections;
   const auto reflectance = static_cast<float>(boundary.reflectance);
   if (point.edgeShare > 0.0f) // edges are painted on

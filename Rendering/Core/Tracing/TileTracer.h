@@ -122,11 +122,14 @@ private:
   void arrive(const SurfacePoint& point, const glm::dvec3& direction,
     const glm::dvec3& toViewer, const Path& path, Kind kind);
   Lighting::Target targetOf(const Path& path, float mirror, float opacity);
+  Lighting::Target highlightOf(const Path& path);
   void noteArrival(
     const Path& path, const Part& part, std::size_t index, bool front, Kind kind);
   void note(PathEvent event, const Path& path, std::size_t index, unsigned int outcome);
   void arriveAtGlass(const SurfacePoint& point, const glm::dvec3& direction,
     const glm::dvec3& toViewer, const Path& path);
+  void sendThroughGlass(
+    const SurfacePoint& point, const glm::dvec3& direction, const Path& path);
   void passThrough(const SurfacePoint& point, const glm::dvec3& direction, const Path& path,
     Kind kind);
   void spawn(

@@ -4,13 +4,42 @@
 #include "vtkAlgorithm.h"
 #include "vtkAlgorithmOutput.h"
 #include "vtkDataObject.h"
+#include "vtkInformation.h"
 #include "vtkMapper.h"
 #include "vtkPolyDataMapper.h"
+#include "vtkStreamingDemandDrivenPipeline.h"
 
 namespace hrt
 {
 namespace scene
 {
+
+namespace
+{
+
+int firstPiece(vtkPolyDataMapper* mapper)
+{
+  return mapper->GetNumberOfSubPieces() * mapper->GetPiece();
+}
+
+int pieces(vtkPolyDataMapper* mapper)
+{
+  return mapper->GetNumberOfSubPieces() * mapper->GetNumberOfPieces();
+}
+
+// Whether the producer was last asked for the mapper's piece: then it need not be told again, which takes
+// most of the time of an update where nothing is new.
+bool asksForThatPiece(vtkAlgorithm* producer, vtkPolyDataMapper* mapper)
+{
+  using Pipeline = vtkStreamingDemandDrivenPipeline;
+  vtkInformation* const output = producer->GetOutputInformation(0);
+  return output && output->Has(Pipeline::UPDATE_PIECE_NUMBER()) &&
+    Pipeline::GetUpdatePiece(output) == firstPiece(mapper) &&
+    Pipeline::GetUpdateNumberOfPieces(output) == pieces(mapper) &&
+    Pipeline::GetUpdateGhostLevel(output) == mapper->GetGhostLevel();
+}
+
+} // namespace
 
 //------------------------------------------------------------------------------
 std::unique_ptr<MapperAdapter> makeAdapter(vtkMapper* mapper)
@@ -40,10 +69,9 @@ vtkDataObject* updatedInput(vtkMapper* mapper)
     vtkAlgorithmOutput* const connection = mapper->GetInputConnection(0, 0);
     vtkAlgorithm* const producer = connection->GetProducer();
     auto* const surface = vtkPolyDataMapper::SafeDownCast(mapper);
-    if (surface && connection->GetIndex() == 0)
+    if (surface && connection->GetIndex() == 0 && !asksForThatPiece(producer, surface))
     {
-      producer->UpdatePiece(surface->GetNumberOfSubPieces() * surface->GetPiece(),
-        surface->GetNumberOfSubPieces() * surface->GetNumberOfPieces(), surface->GetGhostLevel());
+      producer->UpdatePiece(firstPiece(surface), pieces(surface), surface->GetGhostLevel());
     }
     else
     {
