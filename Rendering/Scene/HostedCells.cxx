@@ -80,7 +80,7 @@ void HostedCells::make(
 {
   const glm::vec3& color = piece.overrides.colorValue;
   const Signature signature(piece.data.GetPointer(), piece.data->GetMTime(),
-    piece.colors.GetPointer(), piece.colors->GetMTime(), property, property->GetMTime(),
+    piece.colors, piece.colors->GetMTime(), property, property->GetMTime(),
     piece.overrides.color, color.x, color.y, color.z);
   if (shown.actor && shown.signature == signature)
   {

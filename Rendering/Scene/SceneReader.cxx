@@ -504,6 +504,7 @@ Frame SceneReader::read(
   this->Errors.abandonUpdate();
   const std::vector<ActorPath> paths = actorPaths(renderer);
   draft.frame.verdicts.reserve(paths.size());
+  snapshot.parts.reserve(paths.size());
   for (const ActorPath& path : paths)
   {
     this->addPath(path, draft);

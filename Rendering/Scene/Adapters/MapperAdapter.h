@@ -40,7 +40,7 @@ struct PieceOverrides
 struct SurfacePiece
 {
   vtkSmartPointer<vtkPolyData> data;
-  vtkSmartPointer<vtkMapper> colors; // its settings colour the data
+  vtkMapper* colors = nullptr; // its settings colour the data; the actor or the adapter keeps it
   // Of each cell of the data its number in the mapper's input; null: the same.
   vtkSmartPointer<vtkDataArray> originalCells;
   PieceOverrides overrides;
