@@ -138,13 +138,11 @@ void ObjectIntersectionBuffer::upload(const PrimaryHits& primary, const PixelBou
 {
   this->TrianglesDrawn = 0;
   this->Hits.upload(primary.ids.data(), bounds);
-  std::vector<float> depths;
-  depths.reserve(primary.clipDepths.size());
-  for (const double z : primary.clipDepths)
-  {
-    depths.push_back(this->Convention.storedDepth(z));
-  }
-  this->Depth.upload(depths.data(), bounds);
+  const DepthConvention convention = this->Convention;
+  this->StoredDepths.resize(primary.clipDepths.size());
+  std::transform(primary.clipDepths.begin(), primary.clipDepths.end(), this->StoredDepths.begin(),
+    [convention](double z) { return convention.storedDepth(z); });
+  this->Depth.upload(this->StoredDepths.data(), bounds);
 }
 
 } // namespace gl

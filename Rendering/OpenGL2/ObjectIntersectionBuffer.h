@@ -56,6 +56,7 @@ private:
   DepthConvention Convention;
   Visibility Mode = Visibility::ItemBuffer;
   std::uint64_t TrianglesDrawn = 0; // in the last draw
+  std::vector<float> StoredDepths;  // of the last upload; kept for its memory
 };
 
 } // namespace gl

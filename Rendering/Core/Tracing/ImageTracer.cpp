@@ -52,14 +52,17 @@ public:
     const Camera& camera = snapshot.camera;
     image.width = camera.width;
     image.height = camera.height;
-    const bool everything = wanted == Wanted::Everything;
-    image.pixels.assign(std::size_t(camera.width) * camera.height,
-      glm::vec4(0.0f, 0.0f, 0.0f, everything ? 0.0f : 1.0f));
-    if (everything || settings.maximumDepth > 0)
+    if (wanted == Wanted::Everything || settings.maximumDepth > 0)
     {
       this->Bounds = settings.bounds.within(camera.width, camera.height);
       this->SampleBounds = this->Samples.samplesWithin(this->Bounds);
     }
+    const std::size_t size = std::size_t(camera.width) * camera.height;
+    if (settings.interleave > 1 || this->Bounds.pixels() != size)
+    {
+      image.pixels.assign(size, noLight(wanted));
+    }
+    image.pixels.resize(size); // all of them are traced, on all threads
     if (!this->SampleBounds.empty())
     {
       this->Started = this->SampleBounds.y0 / kTile;

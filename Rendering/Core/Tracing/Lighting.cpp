@@ -408,29 +408,40 @@ glm::vec3 Lighting::throughVeil(
   return (1.0f - a) * (1.0f - a + a * point.diffuseColor);
 }
 
-glm::vec3 Lighting::transmittance(Ray ray, int bounces, PathSignature& signature) const
+glm::vec3 Lighting::transmittance(
+  const Ray& ray, int bounces, PathSignature& signature) const
+{
+  return this->transmittance(ray, this->Rays.intersect(ray), bounces, signature);
+}
+
+glm::vec3 Lighting::transmittance(
+  Ray ray, Hit hit, int bounces, PathSignature& signature) const
 {
   glm::vec3 share(1.0f);
+  std::vector<Hit> members;
   for (int veil = 0; veil < kMostVeils; ++veil)
   {
-    const Hit hit = this->Rays.intersect(ray);
     if (!hit.valid())
     {
       return share;
     }
-    std::vector<Hit> members(1, hit);
-    if (hit.shared)
+    const SurfacePoint point = this->Points.at(hit, ray.direction);
+    if (!hit.shared)
+    {
+      share *= this->throughVeil(point, bounces, signature);
+    }
+    else
     {
       this->Sets.gather(ray, hit, members);
+      for (const Hit& member : members)
+      {
+        share *= this->throughVeil(this->Points.at(member, ray.direction), bounces, signature);
+      }
     }
-    for (const Hit& member : members)
-    {
-      share *= this->throughVeil(this->Points.at(member, ray.direction), bounces, signature);
-    }
-    const SurfacePoint point = this->Points.at(hit, ray.direction);
     const double left = ray.tMaximum - hit.t;
     ray = leave(point, ray.direction);
     ray.tMaximum = left;
+    hit = this->Rays.intersect(ray);
   }
   return glm::vec3(0.0f);
 }
@@ -479,6 +490,12 @@ void Lighting::flush(ShadowQueue& queue, RayOrder order, std::vector<glm::vec3>&
 {
   std::vector<std::uint8_t> blocked(queue.rays.size());
   this->Rays.occluded(queue.rays.data(), blocked.data(), queue.rays.size(), order);
+  std::vector<Hit> veils;
+  if (this->AnyVeil)
+  {
+    this->findVeils(queue, blocked, order, veils);
+  }
+  std::size_t next = 0;
   for (std::size_t i = 0; i < queue.rays.size(); ++i)
   {
     const std::uint32_t pixel = queue.pixels[i];
@@ -487,11 +504,29 @@ void Lighting::flush(ShadowQueue& queue, RayOrder order, std::vector<glm::vec3>&
     if (!blocked[i])
     {
       sums[pixel] += this->AnyVeil
-        ? queue.portions[i] * this->transmittance(queue.rays[i], bounces, signatures[pixel])
+        ? queue.portions[i] *
+          this->transmittance(queue.rays[i], veils[next++], bounces, signatures[pixel])
         : queue.portions[i];
     }
   }
   queue.clear();
+}
+
+// The first surfaces that the rays which nothing blocks meet, one after the other.
+void Lighting::findVeils(const ShadowQueue& queue, const std::vector<std::uint8_t>& blocked,
+  RayOrder order, std::vector<Hit>& veils) const
+{
+  std::vector<Ray> open;
+  open.reserve(queue.rays.size());
+  for (std::size_t i = 0; i < queue.rays.size(); ++i)
+  {
+    if (!blocked[i])
+    {
+      open.push_back(queue.rays[i]);
+    }
+  }
+  veils.resize(open.size());
+  this->Rays.intersect(open.data(), veils.data(), open.size(), order);
 }
 
 } // namespace hrt

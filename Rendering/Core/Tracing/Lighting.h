@@ -117,7 +117,11 @@ private:
       signature += signatureOf(event, bounces, index, outcome);
     }
   }
-  glm::vec3 transmittance(Ray ray, int bounces, PathSignature& signature) const;
+  // Of a ray that nothing blocks; `hit`: the first surface that it meets.
+  glm::vec3 transmittance(const Ray& ray, int bounces, PathSignature& signature) const;
+  glm::vec3 transmittance(Ray ray, Hit hit, int bounces, PathSignature& signature) const;
+  void findVeils(const ShadowQueue& queue, const std::vector<std::uint8_t>& blocked,
+    RayOrder order, std::vector<Hit>& veils) const;
   glm::vec3 throughVeil(
     const SurfacePoint& point, int bounces, PathSignature& signature) const;
   float shareFromMap(const glm::dvec3& point, const glm::dvec3& geometricNormal, const Part& part,

@@ -40,6 +40,11 @@ public:
   {
     this->Rays.clear();
     this->Pixels.clear();
+    for (const std::uint32_t pixel : pixels)
+    {
+      this->Hits.ids[pixel] = 0;
+      this->Hits.clipDepths[pixel] = 1.0;
+    }
     for (std::size_t i = 0; i < pixels.size(); i += kSurfaceLanes)
     {
       this->add(pixels.data() + i, std::min<std::size_t>(kSurfaceLanes, pixels.size() - i), count);
@@ -304,13 +309,18 @@ RayCounters castPrimaryRays(const Snapshot& snapshot, const Structure& structure
 {
   const Camera& camera = snapshot.camera;
   const std::size_t pixels = std::size_t(camera.width) * camera.height;
-  hits.ids.assign(pixels, 0);
-  hits.clipDepths.assign(pixels, 1.0);
+  const PixelBounds bounds = settings.bounds.within(camera.width, camera.height);
+  if (bounds.pixels() != pixels)
+  {
+    hits.ids.assign(pixels, 0);
+    hits.clipDepths.assign(pixels, 1.0);
+  }
+  hits.ids.resize(pixels); // every tile clears its own
+  hits.clipDepths.resize(pixels);
   const TracedFrame frame(snapshot, structure, settings);
   const Lattice lattice(camera, settings.interleave);
   tbb::enumerable_thread_specific<Local> locals(
     [&] { return Local(frame, hits); });
-  const PixelBounds bounds = settings.bounds.within(camera.width, camera.height);
   forEachTile(lattice.samplesWithin(bounds), locals,
     [&](Local& local, const TileSpan& columns, const TileSpan& rows) {
       forEachInBlocks(columns.count, rows.count, [&](int x, int y) {

@@ -98,7 +98,7 @@ void TileTracer::trace(const std::vector<std::uint32_t>& pixels, Wanted wanted,
   this->Sums.assign(pixels.size(), glm::vec3(0.0f));
   // No hit: nothing to add. In the whole picture alpha 0 says so, in the secondary image the
   // primary colour stays.
-  this->Alphas.assign(pixels.size(), wanted == Wanted::Everything ? 0.0f : 1.0f);
+  this->Alphas.assign(pixels.size(), noLight(wanted).a);
   this->Parts.assign(pixels.size(), kNoPart);
   this->Missed.assign(pixels.size(), 0);
   this->Detailed.assign(pixels.size(), 0);

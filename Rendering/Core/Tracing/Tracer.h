@@ -108,6 +108,12 @@ enum class Wanted : std::uint8_t
   SecondaryOnly // what is to be added to a primary image: see SecondaryImage
 };
 
+// Of a pixel that nothing is traced for.
+inline glm::vec4 noLight(Wanted wanted)
+{
+  return { 0.0f, 0.0f, 0.0f, wanted == Wanted::Everything ? 0.0f : 1.0f };
+}
+
 // What became of the pixels whose ray does not meet the triangle that the rasteriser named; all 0 with
 // Multisampling::Clamp.
 struct MultisamplingCounts
