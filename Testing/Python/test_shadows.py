@@ -61,18 +61,39 @@ def texel_in_caster_plane(kind):
     return 2 * tangent * reach / RESOLUTION / cosine
 
 
+# A cosine from a dot product of two normalised vectors in single precision is off by less than 16
+# roundings of 2^-24.
+COSINE_ROUNDING = 16 * 2.0**-24
+
+
+def beyond_cone(kind, position):
+    """By how much the cosine of each point to the light's axis is below that of its cone."""
+    if "spot" not in kind:
+        return np.full(position.shape[:-1], -np.inf)
+    light = np.array(LIGHTS[kind]["position"])
+    way = position - light
+    cosine = (way @ -light) / np.linalg.norm(way, axis=-1) / np.linalg.norm(light)
+    return np.cos(np.radians(LIGHTS[kind]["ConeAngle"])) - cosine
+
+
+@pytest.mark.parametrize("mode", ["ShadowMaps", "Exact"])
 @pytest.mark.parametrize("size", [(300, 300), (600, 300), (200, 500)], ids=lambda s: f"{s[0]}x{s[1]}")
 @pytest.mark.parametrize("kind", LIGHTS)
-def test_shadow_of_a_square(kind, size, render):
+def test_shadow_of_a_square(kind, size, mode, render):
     renderer, rt = scene(kind)
+    getattr(rt, f"SetShadowModeTo{mode}")()
     render(renderer, size)
     on_floor = buffer(rt, "prop") == 0
     visible = buffer(rt, "shadow")[on_floor]
-    outside = analytic(kind, buffer(rt, "position")[on_floor])
+    position = buffer(rt, "position")[on_floor]
+    outside = analytic(kind, position)
     # Bilinear comparison spreads the border over the texels on its two sides.
     border = 2.0 * texel_in_caster_plane(kind)
-    lit = outside > border
-    dark = outside < -border
+    beyond = beyond_cone(kind, position)
+    lit = (outside > border) & (beyond < -COSINE_ROUNDING)
+    # Beyond the cone no light arrives either.
+    dark = (outside < -border) | (beyond > COSINE_ROUNDING)
+    assert kind != "spot" or (beyond > COSINE_ROUNDING).sum() > 2000
     wrong = np.count_nonzero(visible[lit] != 1.0) + np.count_nonzero(visible[dark] != 0.0)
     print(
         f"shadow {kind} {size[0]}x{size[1]}: {wrong} wrong of {visible.size} floor pixels,"

@@ -69,6 +69,12 @@ HRT_FUNCTION vec2 hrtClampBarycentrics(real u, real v)
   return vec2(max(cu - real(0.5) * excess, real(0.0)), max(cv - real(0.5) * excess, real(0.0)));
 }
 
+// Whether light that travels `toward` a point is in the light's cone; all is where it has none.
+HRT_FUNCTION HRT_BOOL hrtInCone(HrtLight light, vec3 toward)
+{
+  return !(dot(toward, light.direction) < light.cosCone);
+}
+
 // Distance attenuation and cone of a light at a point whose unit direction from the light is `toward`.
 HRT_FUNCTION real hrtAttenuation(HrtLight light, vec3 toward, real distanceToLight)
 {
@@ -84,8 +90,8 @@ HRT_FUNCTION real hrtAttenuation(HrtLight light, vec3 toward, real distanceToLig
     real coneDot = dot(toward, light.direction);
     // VTK's exponent 0 is a cone of even light; a wide cone may have a negative cosine only beyond
     // 90 degrees, where cosCone is off.
-    attenuation = HRT_SELECT(coneDot < light.cosCone, real(0.0),
-      attenuation * pow(max(coneDot, HRT_POW_FLOOR), light.exponent));
+    attenuation = HRT_SELECT(hrtInCone(light, toward),
+      attenuation * pow(max(coneDot, HRT_POW_FLOOR), light.exponent), real(0.0));
   }
   return attenuation;
 }

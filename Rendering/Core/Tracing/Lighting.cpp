@@ -461,6 +461,11 @@ float Lighting::shareFromMap(const glm::dvec3& point, const glm::dvec3& geometri
 
 float Lighting::visibleShare(const SurfacePoint& point, std::size_t light) const
 {
+  const shading::HrtLight from = this->lightFrom(point, light);
+  if (!shading::hrtInCone(from, shading::hrtLightDirectionAt(from, glm::vec3(0.0f))))
+  {
+    return 0.0f;
+  }
   if (this->Settings.shadowMaps)
   {
     return this->shareFromMap(

@@ -292,7 +292,9 @@ vec4 shadeHit(uvec4 hit)
 
   if (shadowLight >= 0)
   {
-    return vec4(lightVisibility(shadowLight, fetchLight(shadowLight), p, ng, flags.y));
+    HrtLight light = fetchLight(shadowLight);
+    bool lit = hrtInCone(light, hrtLightDirectionAt(light, p));
+    return vec4(lit ? lightVisibility(shadowLight, light, p, ng, flags.y) : 0.0);
   }
 
   HrtTerms terms = hrtTermsAt(uv.x, uv.y, sides.front);
