@@ -3,6 +3,7 @@
 
 #include "Rendering/OpenGL2/GeometryBuffers.h"
 
+#include "Rendering/Core/Shading/ShadingFrame.h"
 #include "Rendering/Core/Shading/ShadingLight.h"
 
 #include <glm/gtc/matrix_inverse.hpp>
@@ -32,13 +33,13 @@ void appendTextureTransform(std::vector<glm::vec4>& table, const Part& part, std
 }
 
 // `texturePlace`: of the descriptions of the part's textures.
-void appendPart(std::vector<glm::vec4>& table, const Part& part, const glm::dmat4& worldToView,
-  std::size_t texturePlace)
+void appendPart(std::vector<glm::vec4>& table, const Part& part,
+  const glm::dmat4& shadingFromWorld, std::size_t texturePlace)
 {
-  const glm::dmat4 toView = worldToView * bufferToWorld(part);
-  const glm::dmat3 normals = glm::inverseTranspose(glm::dmat3(toView));
+  const glm::dmat4 toShading = shadingFromWorld * bufferToWorld(part);
+  const glm::dmat3 normals = glm::inverseTranspose(glm::dmat3(toShading));
   // The last row is that of every affine matrix.
-  const glm::dmat4 rows = glm::transpose(toView);
+  const glm::dmat4 rows = glm::transpose(toShading);
   for (int row = 0; row < 3; ++row)
   {
     table.emplace_back(rows[row]);
@@ -68,9 +69,9 @@ void appendPart(std::vector<glm::vec4>& table, const Part& part, const glm::dmat
 }
 
 void appendLight(std::vector<glm::vec4>& table, const Light& light, bool singleHeadlight,
-  const glm::dmat4& worldToView, const ShadowSlot& shadow)
+  const glm::dmat4& shadingFromWorld, const ShadowSlot& shadow)
 {
-  const shading::HrtLight l = shadingLight(light, singleHeadlight, worldToView);
+  const shading::HrtLight l = shadingLight(light, singleHeadlight, shadingFromWorld);
   table.emplace_back(l.position, static_cast<float>(l.kind));
   table.emplace_back(l.direction, l.cosCone);
   table.emplace_back(l.color, l.exponent);
@@ -91,11 +92,12 @@ PartTables::PartTables(ObjectPool& pool)
 //------------------------------------------------------------------------------
 void PartTables::updateParts(const Snapshot& snapshot, const TextureBuffers& textures)
 {
+  const ShadingFrame frame(snapshot);
   std::vector<glm::vec4> table, descriptions;
   table.reserve(snapshot.parts.size() * kPartTexels);
   for (const Part& part : snapshot.parts)
   {
-    appendPart(table, part, snapshot.camera.worldToView,
+    appendPart(table, part, frame.fromWorld,
       snapshot.parts.size() * kPartTexels + descriptions.size());
     textures.describe(part, descriptions);
   }
@@ -106,12 +108,13 @@ void PartTables::updateParts(const Snapshot& snapshot, const TextureBuffers& tex
 //------------------------------------------------------------------------------
 void PartTables::updateLights(const Snapshot& snapshot, const std::vector<ShadowSlot>& shadows)
 {
+  const ShadingFrame frame(snapshot);
   std::vector<glm::vec4> lights;
   lights.reserve(snapshot.lights.size() * kLightTexels);
   for (std::size_t i = 0; i < snapshot.lights.size(); ++i)
   {
-    appendLight(lights, snapshot.lights[i], snapshot.singleHeadlight, snapshot.camera.worldToView,
-      shadows[i]);
+    appendLight(
+      lights, snapshot.lights[i], snapshot.singleHeadlight, frame.fromWorld, shadows[i]);
   }
   this->Lights.upload(lights.data(), lights.size() * sizeof(lights[0]), GL_STREAM_DRAW);
 }

@@ -1,5 +1,5 @@
 // The small tables that change from frame to frame: each part's matrices and material and each
-// light, in view coordinates, composed in double precision and only then rounded to float.
+// light, in the frame of ShadingFrame.h, composed in double precision and only then rounded to float.
 #pragma once
 
 #include "Rendering/OpenGL2/ObjectPool.h"
@@ -16,7 +16,7 @@ namespace gl
 {
 
 // Layout of the tables; the same names are handed to the shaders as #defines.
-//   part:   0-2 rows of the matrix from positions to view coordinates, 3-5 normals to view coordinates,
+//   part:   0-2 rows of the matrix from positions to the frame, 3-5 normals to the frame,
 //           6-8 front: (ambient colour, ambient) (diffuse colour, diffuse) (specular, power),
 //           9-11 back: the same, 12 (lit, folds, textures on the back, textures transformed),
 //           13-15 rows x, y, w of the texture transform with (place of the textures' descriptions in

@@ -5,6 +5,8 @@
 #include "Rendering/OpenGL2/PixelStore.h"
 #include "Rendering/OpenGL2/Shader.h"
 
+#include "Rendering/Core/Shading/ShadingFrame.h"
+
 #include "vtkOpenGLRenderWindow.h"
 #include "vtkShaderProgram.h"
 
@@ -140,11 +142,14 @@ bool PrimaryShader::shade(vtkOpenGLRenderWindow* window, const Inputs& inputs, c
     program->SetUniformi("firstCopied", static_cast<int>(copied->firstTriangle));
     program->SetUniformi("lastPart", static_cast<int>(snapshot.parts.size()) - 1);
   }
-  setRays(program, snapshot.camera.viewRays());
-  if (program->IsUniformUsed("viewToWindow"))
+  const ShadingFrame frame(snapshot);
+  setRays(program, frame.rays);
+  setVector(program, "viewer", frame.viewer);
+  if (program->IsUniformUsed("frameToWindow"))
   {
-    glm::mat4 matrix(snapshot.camera.clipToWindow() * snapshot.camera.viewToClip);
-    program->SetUniformMatrix4x4("viewToWindow", &matrix[0][0]);
+    glm::mat4 matrix(
+      snapshot.camera.clipToWindow() * snapshot.camera.viewToClip * frame.toView);
+    program->SetUniformMatrix4x4("frameToWindow", &matrix[0][0]);
   }
 
   glBindVertexArray(this->VertexArray);

@@ -3,6 +3,8 @@
 
 #include "Rendering/OpenGL2/OffscreenState.h"
 
+#include "Rendering/Core/Shading/ShadingFrame.h"
+
 #include "vtkOpenGLRenderWindow.h"
 #include "vtkShaderProgram.h"
 
@@ -167,7 +169,7 @@ bool ShadowMaps::draw(vtkOpenGLRenderWindow* window, const Snapshot& snapshot,
 //------------------------------------------------------------------------------
 std::vector<glm::vec4> ShadowMaps::faceTable(const Snapshot& snapshot) const
 {
-  const glm::dmat4 viewToWorld = glm::inverse(snapshot.camera.worldToView);
+  const glm::dmat4 toWorld = glm::inverse(ShadingFrame(snapshot).fromWorld);
   const double bend = std::sqrt(2.0) * std::tan(glm::radians(kSmoothFold));
 
   std::vector<glm::vec4> table;
@@ -179,7 +181,7 @@ std::vector<glm::vec4> ShadowMaps::faceTable(const Snapshot& snapshot) const
       const bool drawn = static_cast<std::size_t>(k) < map.faces.size();
       const LightFace face = drawn ? map.faces[static_cast<std::size_t>(k)] : LightFace();
       const glm::dmat4 toStored =
-        this->Convention.storedDepthMatrix(face.worldToClip) * viewToWorld;
+        this->Convention.storedDepthMatrix(face.worldToClip) * toWorld;
       const glm::dmat4 planes = glm::inverseTranspose(toStored);
       for (int column = 0; column < 4; ++column)
       {

@@ -83,6 +83,26 @@ def test_shadow_of_a_square(kind, size, mode, render):
     renderer, rt = scene(kind)
     getattr(rt, f"SetShadowModeTo{mode}")()
     render(renderer, size)
+    check_shadow(kind, rt, f"{size[0]}x{size[1]}")
+
+
+@pytest.mark.parametrize("distance", [1e3, 1e6, 1e9])
+@pytest.mark.parametrize("parallel", [True, False], ids=["parallel", "long lens"])
+@pytest.mark.parametrize("kind", LIGHTS)
+def test_shadows_do_not_depend_on_how_far_the_camera_stands(kind, parallel, distance, render):
+    renderer, rt = scene(kind)
+    camera = renderer.GetActiveCamera()
+    toward = np.array([1.0, 5.0, 4.0]) / np.linalg.norm([1.0, 5.0, 4.0])
+    camera.SetPosition(*(distance * toward))
+    camera.SetParallelProjection(parallel)
+    camera.SetParallelScale(2.0)
+    camera.SetViewAngle(np.degrees(2.0 * np.arctan(2.0 / distance)))
+    renderer.ResetCameraClippingRange()
+    render(renderer, (300, 300))
+    check_shadow(kind, rt, f"from {distance:g}")
+
+
+def check_shadow(kind, rt, title):
     on_floor = buffer(rt, "prop") == 0
     visible = buffer(rt, "shadow")[on_floor]
     position = buffer(rt, "position")[on_floor]
@@ -96,7 +116,7 @@ def test_shadow_of_a_square(kind, size, mode, render):
     assert kind != "spot" or (beyond > COSINE_ROUNDING).sum() > 2000
     wrong = np.count_nonzero(visible[lit] != 1.0) + np.count_nonzero(visible[dark] != 0.0)
     print(
-        f"shadow {kind} {size[0]}x{size[1]}: {wrong} wrong of {visible.size} floor pixels,"
+        f"shadow {kind} {title}: {wrong} wrong of {visible.size} floor pixels,"
         f" {visible.size - lit.sum() - dark.sum()} on the border of {border:.4f}"
     )
     assert dark.sum() > 200 and lit.sum() > 2000

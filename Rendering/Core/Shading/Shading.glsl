@@ -4,7 +4,7 @@
 //
 // The equations are those of VTK's own polydata shader (vtkOpenGLPolyDataMapper, ReplaceShaderLight
 // and ReplaceShaderColor), so that a picture with all effects off equals VTK's. They are invariant
-// under rotations: the GPU evaluates them in view coordinates, the tracer in world coordinates.
+// under rotations: the GPU evaluates them in its frame (ShadingFrame.h), the tracer in world coordinates.
 //
 // HRT_FUNCTION is `inline` in C++ and empty in GLSL. `real` is float, or double in the reference, or lanes
 // of them (Surface/SurfaceKernels.h), for which what depends on a point may not be decided by `if`:

@@ -1,5 +1,5 @@
 // From a snapshot's light to the one the shared shading source takes, in any rigid frame: the GPU
-// asks for view coordinates, the tracer for world coordinates relative to the scene's origin.
+// asks for its frame's, the tracer for world coordinates relative to the scene's origin.
 #pragma once
 
 #include "Rendering/Core/Shading/Shading.h"

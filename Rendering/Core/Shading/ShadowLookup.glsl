@@ -1,6 +1,6 @@
 // The look-up in shadow maps, written once for both ray casters (paper, section 3): compiled into the GPU's
 // fragment shader and, through ShadowLookup.h, into the tracer, which looks maps up that were read
-// back. All positions are in view coordinates.
+// back. All positions are in the frame of ShadingFrame.h.
 //
 // Whoever includes it provides HRT_SHADOW_FACE(i), texel i of the table of faces (kFaceTexels a face),
 // HRT_SHADOW_DEPTH(place), the depth stored at a texel of the atlas, and HRT_SHADOW_CLEAR, the depth

@@ -23,7 +23,7 @@
 namespace hrt
 {
 
-// A face's entry in the table: 0-3 view coordinates to (x, y, stored depth, w), 4-7 the matrix that
+// A face's entry in the table: 0-3 the frame (ShadingFrame.h) to (x, y, stored depth, w), 4-7 the matrix that
 // maps planes likewise, 8 stored depth to distance, 9 (tile origin, tile size, bend factor),
 // 10 (texel size: constant, linear; depth of the near plane; rounding: quadratic).
 inline constexpr int kFaceTexels = 11;

@@ -1,6 +1,7 @@
 // Implements lighting with shadow rays.
 #include "Rendering/Core/Tracing/Lighting.h"
 
+#include "Rendering/Core/Shading/ShadingFrame.h"
 #include "Rendering/Core/Shading/ShadingLight.h"
 
 #include <algorithm>
@@ -55,6 +56,7 @@ Lighting::Lighting(const Snapshot& snapshot, const Surfaces& surfaces, const Str
   , Points(surfaces)
   , Sets(snapshot, surfaces, structure, settings.refractions)
 {
+  const ShadingFrame frame(snapshot);
   const CameraRays rays = snapshot.camera.worldRays(snapshot.origin);
   this->HasEye = rays.originX == glm::dvec3(0.0) && rays.originY == glm::dvec3(0.0);
   this->Eye = rays.origin0;
@@ -62,12 +64,12 @@ Lighting::Lighting(const Snapshot& snapshot, const Surfaces& surfaces, const Str
   {
     this->Lights.push_back(shadingLight(light, snapshot.singleHeadlight, glm::dmat4(1.0)));
     this->LaneLights.push_back(this->laneLight(light, this->Lights.back()));
-    this->ViewLights.push_back(
-      shadingLight(light, snapshot.singleHeadlight, snapshot.camera.worldToView));
+    this->FrameLights.push_back(
+      shadingLight(light, snapshot.singleHeadlight, frame.fromWorld));
   }
-  this->ToView = snapshot.camera.worldToView;
-  this->ToView[3] = snapshot.camera.worldToView * glm::dvec4(snapshot.origin, 1.0);
-  this->NormalsToView = glm::inverseTranspose(glm::dmat3(this->ToView));
+  this->ToFrame = frame.fromWorld;
+  this->ToFrame[3] = frame.fromWorld * glm::dvec4(snapshot.origin, 1.0);
+  this->NormalsToFrame = glm::inverseTranspose(glm::dmat3(this->ToFrame));
   this->AnyVeil = std::any_of(snapshot.parts.begin(), snapshot.parts.end(),
     [&settings](const Part& part) { return isVeil(part, settings.tintedShadows); });
 }
@@ -446,17 +448,17 @@ glm::vec3 Lighting::transmittance(
   return glm::vec3(0.0f);
 }
 
-// As the GPU ray caster looks it up: in single precision, in view coordinates.
+// As the GPU's shader looks it up: in single precision, in its frame.
 float Lighting::shareFromMap(const glm::dvec3& point, const glm::dvec3& geometricNormal,
   const Part& part, std::size_t light) const
 {
   const ShadowMapTables& tables = *this->Settings.shadowMaps;
   const ShadowSlot& slot = tables.slots[light];
-  const glm::vec3 position(this->ToView * glm::dvec4(point, 1.0));
-  const glm::vec3 normal(glm::normalize(this->NormalsToView * geometricNormal));
+  const glm::vec3 position(this->ToFrame * glm::dvec4(point, 1.0));
+  const glm::vec3 normal(glm::normalize(this->NormalsToFrame * geometricNormal));
   const float folds = part.isFlat() ? 0.0f : 1.0f;
   return shading::ShadowLookup(tables).hrtLightVisibility(
-    slot.firstFace, slot.faceCount, this->ViewLights[light], position, normal, folds);
+    slot.firstFace, slot.faceCount, this->FrameLights[light], position, normal, folds);
 }
 
 float Lighting::visibleShare(const SurfacePoint& point, std::size_t light) const

@@ -134,9 +134,9 @@ private:
   Meetings Sets;
   std::vector<shading::HrtLight> Lights; // positions unset: see lightFrom
   std::vector<LaneLight> LaneLights; // the same
-  std::vector<shading::HrtLight> ViewLights; // in view coordinates, as shadow maps are looked up in
-  glm::dmat4 ToView; // from coordinates relative to the scene's origin
-  glm::dmat3 NormalsToView;
+  std::vector<shading::HrtLight> FrameLights; // in the frame that shadow maps are looked up in
+  glm::dmat4 ToFrame; // to it, from coordinates relative to the scene's origin
+  glm::dmat3 NormalsToFrame;
   bool AnyVeil = false;
   // The eye of a perspective camera, relative to the scene's origin.
   bool HasEye = false;

@@ -1,7 +1,7 @@
 //VTK::System::Dec
 // The GPU ray caster (paper, section 3.2): for every pixel, look the triangle up in the object
 // intersection buffer, intersect it with the primary ray or take the interpolated (u, v), test the
-// shadow maps and shade. All positions are in view coordinates.
+// shadow maps and shade. All positions are in view coordinates, or moved along their axis: ShadingFrame.h.
 uniform usampler2D hitBuffer;
 uniform usamplerBuffer trianglePart; // part number of each triangle
 uniform usamplerBuffer indices;      // the vertices of each triangle's corners
@@ -23,6 +23,7 @@ uniform int shadowLight;             // >= 0: write this light's visible share i
 uniform vec2 viewportSize;
 uniform vec4 noHit;
 uniform int triangleLimit;
+uniform vec3 viewer; // view coordinates' origin, in the frame: see ShadingFrame.h
 uniform vec3 rayOrigin0, rayOriginX, rayOriginY;
 uniform vec3 rayDirection0, rayDirectionX, rayDirectionY;
 out vec4 fragmentColor;
@@ -126,7 +127,7 @@ vec3 cornerInView(int vertex)
   return positionToView * local;
 }
 
-// A triangle's corners in view coordinates.
+// A triangle's corners in the frame.
 struct Corners
 {
   vec3 a;
@@ -198,11 +199,11 @@ void readyPart(int part)
 
 #ifdef HRT_EDGES
 uniform isamplerBuffer triangleSides;
-uniform mat4 viewToWindow; // pixels from the picture's corner and depth, times w
+uniform mat4 frameToWindow; // pixels from the picture's corner and depth, times w
 
 vec4 windowCorner(int triangle, int k)
 {
-  vec4 corner = viewToWindow * vec4(cornerInView(verticesOf(triangle)[k]), 1.0);
+  vec4 corner = frameToWindow * vec4(cornerInView(verticesOf(triangle)[k]), 1.0);
   return vec4(corner.xy - gl_FragCoord.xy * corner.w, corner.zw);
 }
 
@@ -317,7 +318,7 @@ vec4 shadeHit(uvec4 hit)
     color = isPhysical ? vec3(0.0) : color;
 #endif
     // As VTK does for every projection, the viewer is taken to be at the view coordinates' origin.
-    vec3 toViewer = normalize(-p);
+    vec3 toViewer = normalize(viewer - p);
     for (int i = 0; i < lightCount; ++i)
     {
       HrtLight light = fetchLight(i);
