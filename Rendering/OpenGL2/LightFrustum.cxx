@@ -118,19 +118,24 @@ bool shadowsNothing(const Snapshot& snapshot, std::size_t index, const Light& li
   return true;
 }
 
-// A right-handed view frame that looks along a unit direction from a point.
-glm::dmat4 lookAlong(const glm::dvec3& eye, const glm::dvec3& direction)
+// A right-handed view frame that looks along a unit direction from a point. glm::lookAt asks for a second
+// point, in which large coordinates would swallow the direction.
+glm::dmat4 lookAlong(const glm::dvec3& eye, const glm::dvec3& direction, const glm::dvec3& up)
 {
-  const glm::dvec3 up =
-    std::abs(direction.y) < 0.9 ? glm::dvec3(0, 1, 0) : glm::dvec3(1, 0, 0);
-  return glm::lookAt(eye, eye + direction, up);
+  return glm::lookAt(glm::dvec3(0.0), direction, up) * glm::translate(glm::dmat4(1.0), -eye);
+}
+
+// Not nearly along the direction.
+glm::dvec3 upwards(const glm::dvec3& direction)
+{
+  return std::abs(direction.y) < 0.9 ? glm::dvec3(0, 1, 0) : glm::dvec3(1, 0, 0);
 }
 
 LightFace directionalFace(
   const Snapshot& snapshot, const Light& light, const Box& casters, int resolution)
 {
   const glm::dvec3 centre = 0.5 * (casters.lower + casters.upper);
-  const glm::dmat4 view = lookAlong(centre, light.direction);
+  const glm::dmat4 view = lookAlong(centre, light.direction, upwards(light.direction));
   Box box;
   for (int k = 0; k < 8; ++k)
   {
@@ -171,7 +176,7 @@ LightFace perspectiveFace(const Light& light, const glm::dvec3& direction, const
   face.far = far;
   face.worldToClip = glm::frustum(-near * tangent, near * tangent, -near * tangent,
                        near * tangent, near, far) *
-    glm::lookAt(light.position, light.position + direction, up);
+    lookAlong(light.position, direction, up);
   face.texelLinear = 2.0 * tangent / resolution;
   return face;
 }
@@ -204,9 +209,8 @@ std::vector<LightFace> positionalFaces(
     const double half = glm::radians(std::max(double(light.coneAngle), kNarrowestSpot));
     const double near =
       std::max(nearest * std::cos(half) * (1.0 - kDepthMargin), far * nearestRatio);
-    const glm::dvec3 up =
-      std::abs(light.direction.y) < 0.9 ? glm::dvec3(0, 1, 0) : glm::dvec3(1, 0, 0);
-    faces.push_back(perspectiveFace(light, light.direction, up, half, near, far, resolution));
+    faces.push_back(perspectiveFace(
+      light, light.direction, upwards(light.direction), half, near, far, resolution));
     return faces;
   }
   // On a cube face a caster at distance r lies at least r / sqrt(3) ahead.

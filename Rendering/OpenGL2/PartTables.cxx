@@ -69,9 +69,10 @@ void appendPart(std::vector<glm::vec4>& table, const Part& part,
 }
 
 void appendLight(std::vector<glm::vec4>& table, const Light& light, bool singleHeadlight,
-  const glm::dmat4& shadingFromWorld, const ShadowSlot& shadow)
+  const ShadingFrame& frame, const ShadowSlot& shadow)
 {
-  const shading::HrtLight l = shadingLight(light, singleHeadlight, shadingFromWorld);
+  const shading::HrtLight l = 
+    shadingLight(light, singleHeadlight, frame.fromWorld, frame.scale);
   table.emplace_back(l.position, static_cast<float>(l.kind));
   table.emplace_back(l.direction, l.cosCone);
   table.emplace_back(l.color, l.exponent);
@@ -114,7 +115,7 @@ void PartTables::updateLights(const Snapshot& snapshot, const std::vector<Shadow
   for (std::size_t i = 0; i < snapshot.lights.size(); ++i)
   {
     appendLight(
-      lights, snapshot.lights[i], snapshot.singleHeadlight, frame.fromWorld, shadows[i]);
+      lights, snapshot.lights[i], snapshot.singleHeadlight, frame, shadows[i]);
   }
   this->Lights.upload(lights.data(), lights.size() * sizeof(lights[0]), GL_STREAM_DRAW);
 }

@@ -169,7 +169,8 @@ bool ShadowMaps::draw(vtkOpenGLRenderWindow* window, const Snapshot& snapshot,
 //------------------------------------------------------------------------------
 std::vector<glm::vec4> ShadowMaps::faceTable(const Snapshot& snapshot) const
 {
-  const glm::dmat4 toWorld = glm::inverse(ShadingFrame(snapshot).fromWorld);
+  const ShadingFrame frame(snapshot);
+  const glm::dmat4 toWorld = glm::inverse(frame.fromWorld);
   const double bend = std::sqrt(2.0) * std::tan(glm::radians(kSmoothFold));
 
   std::vector<glm::vec4> table;
@@ -179,7 +180,7 @@ std::vector<glm::vec4> ShadowMaps::faceTable(const Snapshot& snapshot) const
     {
       // A face that is not drawn keeps its place; its slot says that nobody looks there.
       const bool drawn = static_cast<std::size_t>(k) < map.faces.size();
-      const LightFace face = drawn ? map.faces[static_cast<std::size_t>(k)] : LightFace();
+      LightFace face = drawn ? map.faces[static_cast<std::size_t>(k)] : LightFace();
       const glm::dmat4 toStored =
         this->Convention.storedDepthMatrix(face.worldToClip) * toWorld;
       const glm::dmat4 planes = glm::inverseTranspose(toStored);
@@ -191,6 +192,9 @@ std::vector<glm::vec4> ShadowMaps::faceTable(const Snapshot& snapshot) const
       {
         table.emplace_back(planes[column]);
       }
+      face.near *= frame.scale; // lengths from here on
+      face.far *= frame.scale;
+      face.texelConstant *= frame.scale;
       table.push_back(depthToDistance(face, this->Convention.reversed));
       table.emplace_back(glm::vec2(this->tile(map.firstFace + k)),
         static_cast<float>(this->Resolution), static_cast<float>(bend));

@@ -102,6 +102,33 @@ def test_shadows_do_not_depend_on_how_far_the_camera_stands(kind, parallel, dist
     check_shadow(kind, rt, f"from {distance:g}")
 
 
+def picture_in_units(kind, unit, render):
+    floor = scenes.actor_of(scenes.plane(FLOOR, 0.0))
+    ball = scenes.actor_of(scenes.superquadric())
+    ball.SetPosition(0.0, HEIGHT * unit, 0.0)
+    for actor in floor, ball:
+        actor.SetScale(unit)
+    renderer = scenes.renderer_of(floor, ball)
+    settings = dict(LIGHTS[kind])
+    position = [unit * x for x in settings.pop("position")]
+    light = scenes.scene_light(position, (0, 0, 0), **settings)
+    light.SetAttenuationValues(0.5, 0.1 / unit, 0.02 / unit**2)
+    renderer.AddLight(light)
+    scenes.look(renderer, [unit * x for x in (1.0, 5.0, 4.0)])
+    renderer.GetActiveCamera().SetClippingRange(1.0 * unit, 16.0 * unit)
+    renderer.SetPass(vtkHybridRayTracingPass())
+    return render(renderer, (300, 300))
+
+
+@pytest.mark.parametrize("exponent", [-53, -30, 30, 53])
+@pytest.mark.parametrize("kind", LIGHTS)
+def test_shadow_maps_do_not_depend_on_the_unit(kind, exponent, render):
+    """A power of two changes no digit, as long as nothing leaves the range of float."""
+    picture = picture_in_units(kind, 1.0, render)
+    assert np.unique(picture.reshape(-1, picture.shape[-1]), axis=0).shape[0] > 100
+    assert np.array_equal(picture_in_units(kind, 2.0**exponent, render), picture)
+
+
 def check_shadow(kind, rt, title):
     on_floor = buffer(rt, "prop") == 0
     visible = buffer(rt, "shadow")[on_floor]
