@@ -59,6 +59,7 @@ std::string definitions(const SurfaceFeatures& features)
   text << "#define FACE_SEAM " << kFaceSeam << "\n";
   text << "#define ROUNDING " << kShadowRounding << "\n";
   text << "#define MINIMUM_COSINE2 " << kMinimumCosine2 << "\n";
+  text << "#define BEND " << kBend << "\n";
   text << "#define HRT_SHADOW_FACE(i) texelFetch(shadowFaces, i)\n";
   text << "#define HRT_SHADOW_DEPTH(place) texelFetch(shadowAtlas, place, 0).r\n";
   text << "#define HRT_SHADOW_CLEAR shadowClearDepth\n";

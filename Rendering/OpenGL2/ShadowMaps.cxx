@@ -167,11 +167,21 @@ bool ShadowMaps::draw(vtkOpenGLRenderWindow* window, const Snapshot& snapshot,
 }
 
 //------------------------------------------------------------------------------
+// In texels: see ShadowLookup.h.
+double ShadowMaps::snapping() const
+{
+  GLint bits = 4; // the least that OpenGL allows
+  glGetIntegerv(GL_SUBPIXEL_BITS, &bits);
+  return std::exp2(-bits - 1) +
+    kInterpolation * std::max(this->Atlas.width(), this->Atlas.height());
+}
+
+//------------------------------------------------------------------------------
 std::vector<glm::vec4> ShadowMaps::faceTable(const Snapshot& snapshot) const
 {
   const ShadingFrame frame(snapshot);
   const glm::dmat4 toWorld = glm::inverse(frame.fromWorld);
-  const double bend = std::sqrt(2.0) * std::tan(glm::radians(kSmoothFold));
+  const double snapping = this->snapping();
 
   std::vector<glm::vec4> table;
   for (const Map& map : this->Maps)
@@ -197,7 +207,7 @@ std::vector<glm::vec4> ShadowMaps::faceTable(const Snapshot& snapshot) const
       face.texelConstant *= frame.scale;
       table.push_back(depthToDistance(face, this->Convention.reversed));
       table.emplace_back(glm::vec2(this->tile(map.firstFace + k)),
-        static_cast<float>(this->Resolution), static_cast<float>(bend));
+        static_cast<float>(this->Resolution), static_cast<float>(snapping));
       // Without reversed depth, the float of a perspective map near 1 resolves 2^-24 d^2 / near.
       const double quadratic =
         face.perspective && !this->Convention.reversed ? kShadowRounding / face.near : 0.0;

@@ -77,6 +77,7 @@ private:
 
   glm::ivec2 tile(int face) const;
   std::vector<glm::vec4> faceTable(const Snapshot& snapshot) const;
+  double snapping() const;
 
   Image2D Atlas;
   TextureBuffer Faces;

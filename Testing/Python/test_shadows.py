@@ -5,6 +5,7 @@ import numpy as np
 import pytest
 import scenes
 from vtkhybrid import buffer, statistics, vtkHybridRayTracingPass
+from vtkmodules.vtkFiltersSources import vtkSphereSource
 
 HALF = 0.5  # the caster: a square of half this side at this height, parallel to the floor
 HEIGHT = 1.0
@@ -148,6 +149,54 @@ def check_shadow(kind, rt, title):
     )
     assert dark.sum() > 200 and lit.sum() > 2000
     assert wrong == 0
+
+
+def eroded(mask, pixels):
+    """What of the mask is at least so many pixels away from its border."""
+    for axis in 0, 1:
+        whole = mask.copy()
+        for by in range(-pixels, pixels + 1):
+            mask = mask & np.roll(whole, by, axis=axis)
+    return mask
+
+
+@pytest.mark.parametrize("elevation", [15, 5, 2])
+@pytest.mark.parametrize("positional", [False, True], ids=["directional", "point"])
+def test_a_flat_table_under_grazing_light_does_not_shadow_itself(positional, elevation, render):
+    table = scenes.actor_of(scenes.plane(0.5, 0.0, resolution=20))
+    balls = []
+    for height in 0.09, -0.3:
+        ball = vtkSphereSource()
+        ball.SetRadius(0.08)
+        ball.SetCenter(0.0, height, 0.0)
+        ball.SetThetaResolution(32)
+        ball.SetPhiResolution(32)
+        balls.append(scenes.actor_of(ball))
+    renderer = scenes.renderer_of(table, *balls)
+    e, a = np.radians(elevation), np.radians(35.0)
+    position = 2.0 * np.array([np.cos(e) * np.cos(a), np.sin(e), np.cos(e) * np.sin(a)])
+    cone = dict(ConeAngle=90.0) if positional else {}
+    renderer.AddLight(scenes.scene_light(position, (0, 0, 0), positional, **cone))
+    scenes.look(renderer, (0.3, 1.0, 1.2))
+    rt = vtkHybridRayTracingPass()
+    rt.SetBuffers(["shadow", "prop"])
+    renderer.SetPass(rt)
+    shares = {}
+    for mode in "Exact", "ShadowMaps":
+        getattr(rt, f"SetShadowModeTo{mode}")()
+        render(renderer, (400, 300))
+        on_table = buffer(rt, "prop") == 0
+        shares[mode] = buffer(rt, "shadow")
+    lit, dark = on_table & (shares["Exact"] == 1), on_table & (shares["Exact"] == 0)
+    # Comparison spreads borders over two texels. Those of the point light, 2 in distance, are stretched by
+    # 1 / sin(elevation) on the table, of which 250 pixels show a length of 1.
+    border = int(2 * (2 * 2.0 / rt.GetShadowMapResolution()) / np.sin(e) * 250) + 2
+    false = (eroded(lit, border) & (shares["ShadowMaps"] < 1.0)).sum()
+    lost = (dark & (shares["ShadowMaps"] > 0.5)).sum()
+    print(f"{elevation} degrees: {false} of {lit.sum()} lit pixels dark, {lost} of {dark.sum()} dark lit")
+    assert lit.sum() > 50000 and dark.sum() > 500
+    assert false == 0
+    assert lost <= 0.1 * dark.sum()
 
 
 def test_headlight_shadow_falls_away_from_the_viewer(render):

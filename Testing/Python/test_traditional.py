@@ -41,11 +41,12 @@ def test_shadow_rays_are_exact(kind, render):
     render(renderer, (600, 300))
     on_floor = buffer(rt, "prop") == 0
     visible = buffer(rt, "shadow")[on_floor]
-    outside = shadows.analytic(kind, buffer(rt, "position")[on_floor])
+    position = buffer(rt, "position")[on_floor]
+    outside, beyond = shadows.analytic(kind, position), shadows.beyond_cone(kind, position)
     # Corners are floats of size up to 3; the light's path and the analytic one round in double.
-    certain = np.abs(outside) > 1e-6
+    certain = (np.abs(outside) > 1e-6) & (np.abs(beyond) > shadows.COSINE_ROUNDING)
     assert certain.mean() > 0.999
-    assert ((visible == 1.0) == (outside > 0))[certain].all()
+    assert ((visible == 1.0) == ((outside > 0) & (beyond < 0)))[certain].all()
     assert set(np.unique(visible)) == {0.0, 1.0}
     assert not statistics(rt)["stages"]["shadow_maps"]["ran"]
 

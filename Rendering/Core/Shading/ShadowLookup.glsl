@@ -14,6 +14,12 @@ HRT_FUNCTION mat4 hrtShadowMatrix(int at)
     HRT_SHADOW_FACE(at + 3));
 }
 
+// The distance from the light, or along it, of a stored depth.
+HRT_FUNCTION real hrtShadowDistance(vec4 toDistance, real depth)
+{
+  return (toDistance.x + toDistance.y * depth) / (toDistance.z + toDistance.w * depth);
+}
+
 // Share of a light that reaches a point, from one face of its shadow map. The map's depth at a
 // texel's centre is compared with the depth, on the same line of sight, of the plane of the
 // receiving triangle: a plane never shadows itself, whatever its slope, and the bias only has to
@@ -23,7 +29,7 @@ HRT_FUNCTION real hrtFaceVisibility(
 {
   mat4 planeToClip = hrtShadowMatrix(at + 4);
   vec4 depthToDistance = HRT_SHADOW_FACE(at + 8);
-  vec4 tile = HRT_SHADOW_FACE(at + 9);   // origin, size in texels, bend bias
+  vec4 tile = HRT_SHADOW_FACE(at + 9);   // origin, size in texels, snapping in texels
   vec4 scale = HRT_SHADOW_FACE(at + 10); // texel: x + y * d; near plane; rounding: w * d^2
   vec4 plane = planeToClip * planeVC;
 
@@ -32,6 +38,8 @@ HRT_FUNCTION real hrtFaceVisibility(
   vec2 corner = floor(texel);
   vec2 weight = texel - corner;
   real cosine2 = max(cosine * cosine, real(MINIMUM_COSINE2));
+  // By so much the rasteriser may have drawn the plane's depth elsewhere.
+  real snapping = (abs(plane.x) + abs(plane.y)) / abs(plane.z) * real(2.0) * tile.w / tile.z;
   real share[4];
   for (int k = 0; k < 4; ++k)
   {
@@ -43,14 +51,13 @@ HRT_FUNCTION real hrtFaceVisibility(
     {
       vec2 centre = (place + real(0.5)) / tile.z * real(2.0) - real(1.0);
       real depth = -(plane.x * centre.x + plane.y * centre.y + plane.w) / plane.z;
-      real receiver = (depthToDistance.x + depthToDistance.y * depth) /
-        (depthToDistance.z + depthToDistance.w * depth);
-      real occluder = (depthToDistance.x + depthToDistance.y * stored) /
-        (depthToDistance.z + depthToDistance.w * stored);
+      real receiver = min(hrtShadowDistance(depthToDistance, depth - snapping),
+        hrtShadowDistance(depthToDistance, depth + snapping));
+      real occluder = hrtShadowDistance(depthToDistance, stored);
       // Beyond the horizon of the receiver's plane the line of sight never meets it.
       receiver =
         receiver < scale.z && depthToDistance.w != real(0.0) ? HRT_FAR_AWAY : receiver;
-      real bias = folds * tile.w * (scale.x + scale.y * occluder) / cosine2 +
+      real bias = folds * real(BEND) * (scale.x + scale.y * occluder) / cosine2 +
         real(ROUNDING) * (eyeDistance + abs(occluder)) + scale.w * occluder * occluder;
       share[k] = occluder < receiver - bias ? real(0.0) : real(1.0);
     }
