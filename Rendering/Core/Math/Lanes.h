@@ -10,7 +10,19 @@
 #include <cstdint>
 #include <cstring>
 
-#if defined(__AVX2__)
+// The sets that are used as a whole or not at all.
+#if defined(__AVX2__) && defined(__FMA__)
+#define HRT_LANES_256 1
+#else
+#define HRT_LANES_256 0
+#endif
+#if HRT_LANES_256 && defined(__AVX512F__) && defined(__AVX512DQ__) && defined(__AVX512VL__)
+#define HRT_LANES_512 1
+#else
+#define HRT_LANES_512 0
+#endif
+
+#if HRT_LANES_256
 #include <immintrin.h>
 #elif defined(__SSE2__)
 #include <emmintrin.h>
@@ -26,9 +38,9 @@ namespace HRT_LANES_NAMESPACE
 
 constexpr int kLanes = 8;
 
-#if defined(__AVX512F__)
+#if HRT_LANES_512
 constexpr int kDoubleBytes = 64;
-#elif defined(__AVX2__)
+#elif HRT_LANES_256
 constexpr int kDoubleBytes = 32;
 #else
 constexpr int kDoubleBytes = 16;
@@ -82,14 +94,14 @@ HRT_INLINE unsigned int bitsOf(const MaskLanes<R>& a)
   unsigned int bits = 0;
   for (int i = 0; i < a.kRegisters; ++i)
   {
-#if defined(__AVX512F__)
+#if HRT_LANES_512
     if constexpr (sizeof(R) == 64)
     {
       bits |= _cvtmask8_u32(_mm512_movepi64_mask((__m512i)a.v[i]));
       continue;
     }
 #endif
-#if defined(__AVX2__)
+#if HRT_LANES_256
     if constexpr (sizeof(R) == 32 && perRegister == 8)
     {
       bits |= static_cast<unsigned int>(_mm256_movemask_ps((__m256)a.v[i]));
@@ -131,16 +143,16 @@ struct NumberLanes
       this->v[i] = a - Register{}; // a - 0 is a, its sign included
     }
   }
-  // At an address aligned to 64 bytes.
+  // At an address that is aligned to the size of all lanes.
   HRT_INLINE static NumberLanes load(const T* from)
   {
     NumberLanes a;
-    std::memcpy(&a, __builtin_assume_aligned(from, 64), sizeof(a));
+    std::memcpy(&a, __builtin_assume_aligned(from, kLanes * sizeof(T)), sizeof(a));
     return a;
   }
   HRT_INLINE void store(T* to) const
   {
-    std::memcpy(__builtin_assume_aligned(to, 64), this, sizeof(*this));
+    std::memcpy(__builtin_assume_aligned(to, kLanes * sizeof(T)), this, sizeof(*this));
   }
 };
 
@@ -262,9 +274,9 @@ HRT_INLINE Doubles sqrt(Doubles a)
 {
   for (int i = 0; i < a.kRegisters; ++i)
   {
-#if defined(__AVX512F__)
+#if HRT_LANES_512
     a.v[i] = (DoubleRegister)_mm512_maskz_sqrt_pd(0xff, (__m512d)a.v[i]);
-#elif defined(__AVX2__)
+#elif HRT_LANES_256
     a.v[i] = (DoubleRegister)_mm256_sqrt_pd((__m256d)a.v[i]);
 #elif defined(__SSE2__)
     a.v[i] = (DoubleRegister)_mm_sqrt_pd((__m128d)a.v[i]);
@@ -281,7 +293,7 @@ HRT_INLINE Floats sqrt(Floats a)
 {
   for (int i = 0; i < a.kRegisters; ++i)
   {
-#if defined(__AVX2__)
+#if HRT_LANES_256
     a.v[i] = (FloatRegister)_mm256_sqrt_ps((__m256)a.v[i]);
 #elif defined(__SSE2__)
     a.v[i] = (FloatRegister)_mm_sqrt_ps((__m128)a.v[i]);
@@ -300,9 +312,9 @@ HRT_INLINE Doubles fused(Doubles a, const Doubles& b, const Doubles& c)
 {
   for (int i = 0; i < a.kRegisters; ++i)
   {
-#if defined(__AVX512F__)
+#if HRT_LANES_512
     a.v[i] = (DoubleRegister)_mm512_fmadd_pd((__m512d)a.v[i], (__m512d)b.v[i], (__m512d)c.v[i]);
-#elif defined(__FMA__)
+#elif HRT_LANES_256
     a.v[i] = (DoubleRegister)_mm256_fmadd_pd((__m256d)a.v[i], (__m256d)b.v[i], (__m256d)c.v[i]);
 #else
     for (int k = 0; k < kDoubleBytes / 8; ++k)
@@ -316,7 +328,7 @@ HRT_INLINE Doubles fused(Doubles a, const Doubles& b, const Doubles& c)
 
 HRT_INLINE Floats toFloats(const Doubles& a)
 {
-#if defined(__AVX512F__)
+#if HRT_LANES_512
   Floats f;
   f.v[0] = (FloatRegister)_mm512_maskz_cvtpd_ps(0xff, (__m512d)a.v[0]);
   return f;
@@ -333,7 +345,7 @@ HRT_INLINE Floats toFloats(const Doubles& a)
 }
 HRT_INLINE Doubles toDoubles(const Floats& a)
 {
-#if defined(__AVX512F__)
+#if HRT_LANES_512
   Doubles d;
   d.v[0] = (DoubleRegister)_mm512_maskz_cvtps_pd(0xff, (__m256)a.v[0]);
   return d;

@@ -45,12 +45,13 @@ inline __attribute__((always_inline)) D powerOf(const D& x, const D& y)
 {
   constexpr std::int64_t fraction = (std::int64_t(1) << 52) - 1;
   constexpr std::int64_t one = std::int64_t(1023) << 52;
+  constexpr std::int64_t exponentOf52 = std::int64_t(1023 + 52) << 52;
   const D shift(0x1p52);
 
   // x = 2^e m.
   const auto bits = wholeBits(x);
   const D m = fromWholeBits((bits & fraction) | one);
-  const D e = fromWholeBits((bits >> 52) | wholeBits(0x1p52)) - D(0x1p52 + 1023.0);
+  const D e = fromWholeBits((bits >> 52) | exponentOf52) - D(0x1p52 + 1023.0);
   const auto large = m > D(1.4142135623730951);
   const D mantissa = select(large, m * D(0.5), m);
   const D exponent = select(large, e + D(1.0), e);

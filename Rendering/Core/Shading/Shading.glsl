@@ -109,10 +109,11 @@ HRT_FUNCTION vec3 hrtLightDirectionAt(HrtLight light, vec3 position)
 // The highlight at a cosine to its middle. Most surfaces have none, and a power is dear.
 HRT_FUNCTION real hrtLobe(HrtSurface surface, real cosine)
 {
-  if (HRT_ANY(
-        surface.specular.x + surface.specular.y + surface.specular.z > real(0.0)))
+  HRT_BOOL shines = surface.specular.x + surface.specular.y + surface.specular.z > real(0.0);
+  if (HRT_ANY(shines))
   {
-    return pow(max(cosine, HRT_POW_FLOOR), surface.power);
+    return HRT_SELECT(shines,
+      pow(max(cosine, HRT_POW_FLOOR), HRT_SELECT(shines, surface.power, real(1.0))), real(0.0));
   }
   return real(0.0);
 }

@@ -41,6 +41,10 @@ inline float pow(float x, float y)
 {
   return power(x, y);
 }
+inline vec3 pow(const vec3& x, const vec3& y)
+{
+  return { power(x.x, y.x), power(x.y, y.y), power(x.z, y.z) };
+}
 #include "Rendering/Core/Shading/Shading.glsl"
 #include "Rendering/Core/Surface/Sides.glsl"
 #include "Rendering/Core/Surface/Pbr.glsl"

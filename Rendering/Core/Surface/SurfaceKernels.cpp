@@ -1,8 +1,6 @@
 // Chooses the kernels.
 #include "Rendering/Core/Surface/SurfaceKernels.h"
 
-#include <cstddef>
-
 namespace hrt
 {
 

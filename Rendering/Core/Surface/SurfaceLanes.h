@@ -13,8 +13,8 @@ namespace HRT_LANES_NAMESPACE
 
 static_assert(kLanes == kSurfaceLanes, "a block is one value");
 
-// What a ray's longest direction has to be, and the rounding of what is computed: those of
-// Geometry/TriangleIntersection.h and Geometry/Coincidence.h, which are no headers for here.
+// kCancelled of Geometry/TriangleIntersection.h, kComputedRounding of Geometry/Coincidence.h and
+// kSurelyInside of Tracing/Surface.cpp, which are no headers for here; the tests would see another value.
 constexpr double kCancelledShare = 0.25;
 constexpr double kComputed = 0x1p-43;
 constexpr double kSurelyInsideShare = 0x1p-20;
@@ -220,7 +220,10 @@ unsigned int meet(SurfaceLanes& lanes)
       select(alongX, v.x, select(alongY, v.y, v.z)) };
   };
   const vec3 d = turned(direction);
-  const Doubles shearX = d.x / d.z, shearY = d.y / d.z, scale = Doubles(1.0) / d.z;
+  const Doubles zero(0.0), one(1.0);
+  const Mask usable = abs(d.z) >= Doubles(__DBL_MIN__);
+  const Doubles along = select(usable, d.z, one);
+  const Doubles shearX = d.x / along, shearY = d.y / along, scale = one / along;
   const vec3 a = turned(corners.a - origin), b = turned(corners.b - origin),
              c = turned(corners.c - origin);
   const Doubles ax = a.x - shearX * a.z, ay = a.y - shearY * a.z;
@@ -237,18 +240,25 @@ unsigned int meet(SurfaceLanes& lanes)
     ofB = select(kept, ofB, differenceOfProducts(ax, cy, ay, cx));
     ofC = select(kept, ofC, differenceOfProducts(bx, ay, by, ax));
   }
-  const Doubles determinant = ofA + ofB + ofC;
+  // Edge-on there is nothing to divide by, and where the exact test has failed nothing to divide for.
+  Doubles determinant = ofA + ofB + ofC;
+  Mask solved = usable & !(determinant == zero);
+  if (kExactly)
+  {
+    solved = solved & maybe & agree(ofA, ofB, ofC);
+  }
+  determinant = select(solved, determinant, one);
   const Doubles t = scale * (ofA * a.z + ofB * b.z + ofC * c.z) / determinant;
   const Doubles u = ofB / determinant, v = ofC / determinant;
   const Doubles infinity(kInfinity);
   const Mask met = (abs(t) < infinity) & (abs(u) < infinity) & (abs(v) < infinity) &
-    (t > Doubles(0.0));
+    (t > zero) & solved;
   t.store(lanes.t);
   if (kExactly)
   {
     u.store(lanes.u);
     v.store(lanes.v);
-    return bitsOf(met & maybe & agree(ofA, ofB, ofC));
+    return bitsOf(met);
   }
   const doubles::vec2 inside = doubles::hrtClampBarycentrics(u, v);
   inside.x.store(lanes.u);

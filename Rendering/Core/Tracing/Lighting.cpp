@@ -519,7 +519,7 @@ void Lighting::flush(ShadowQueue& queue, RayOrder order, std::vector<glm::vec3>&
   queue.clear();
 }
 
-// The first surfaces that the rays which nothing blocks meet, one after the other.
+// The first surfaces that rays meet, of those which nothing blocks; the others leave no gaps.
 void Lighting::findVeils(const ShadowQueue& queue, const std::vector<std::uint8_t>& blocked,
   RayOrder order, std::vector<Hit>& veils) const
 {

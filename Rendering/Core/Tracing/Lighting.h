@@ -59,7 +59,7 @@ public:
     ShadowQueue& queue, RayCount& shadowRays) const;
 
   // The same for several points side by side, of lit surfaces that are not physically based: those lanes of
-  // the block that `bits` has, not zero. `targets`: of each of them.
+  // the block that `bits` has, not zero. `targets`: of each of them; all direct, or none.
   static bool goesInBlocks(const Material& material)
   {
     return material.lit && !material.physical.used;

@@ -255,7 +255,7 @@ private:
   PrimaryHits& Hits;
   ClipRows Planes;
   const SurfaceKernels& Kernels = surfaceKernelsFor(bestInstructionSet());
-  SurfaceLanes Lanes;
+  SurfaceLanes Lanes{};
   Surfaces::Site Site;
   std::vector<std::uint8_t> Plain; // of the parts: see isPlain
   std::vector<Ray> Rays;

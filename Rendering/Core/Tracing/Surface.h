@@ -176,7 +176,6 @@ public:
   // Does nothing where it is that triangle already.
   void locate(const Surfaces& surfaces, TriangleId id);
 
-  const Site& site() const { return this->Where; }
   std::size_t part() const { return this->Where.index; }
   std::size_t triangle() const { return this->Where.triangle; } // in its part
   const Corners& corners() const { return this->At; }

@@ -27,7 +27,7 @@ Ray SurfaceBlock::ray(unsigned int lane) const
   return ray;
 }
 
-void SurfaceBlock::setRay(unsigned int lane, const glm::dvec3& direction)
+void SurfaceBlock::setDirection(unsigned int lane, const glm::dvec3& direction)
 {
   setVector(this->Lanes.direction, lane, direction);
 }

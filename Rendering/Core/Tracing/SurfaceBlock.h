@@ -23,7 +23,7 @@ public:
   // The rays through the centres of so many pixels, whose numbers are lanes().pixel.
   void pixelRays(const PixelRays& camera, unsigned int count);
   Ray ray(unsigned int lane) const;
-  void setRay(unsigned int lane, const glm::dvec3& direction);
+  void setDirection(unsigned int lane, const glm::dvec3& direction);
 
   // Puts a triangle into a lane; then where it is met, unless `meet` finds that out.
   void set(unsigned int lane, TriangleId triangle);
@@ -71,7 +71,7 @@ private:
 
   const Surfaces& Points;
   const SurfaceKernels& Kernels;
-  SurfaceLanes Lanes;
+  SurfaceLanes Lanes{};
   std::array<Surfaces::Site, kLanes> Sites;
   std::array<SurfaceColoring, kLanes> Colorings;
 };

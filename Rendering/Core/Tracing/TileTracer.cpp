@@ -374,10 +374,21 @@ void TileTracer::follow(PathQueue& queue, Kind kind, RayCount& count, RayOrder o
       lanes = 0;
     }
   };
+  // A pixel's paths arrive one after the other, whatever other pixels' do: its sums have one order.
+  const auto waitFor = [&](const Path& path)
+  {
+    const bool pending = std::any_of(this->Arriving, this->Arriving + lanes,
+      [&path](const Path& other) { return other.pixel == path.pixel; });
+    if (pending || lanes == SurfaceBlock::kLanes)
+    {
+      arriveAtAll();
+    }
+  };
   for (std::size_t i = 0; i < kept; ++i)
   {
     Path& path = queue.paths[i];
     Hit& hit = this->Hits[i];
+    waitFor(path);
     const glm::dvec3 direction = queue.rays[i].direction;
     if (!hit.valid())
     {
@@ -390,10 +401,6 @@ void TileTracer::follow(PathQueue& queue, Kind kind, RayCount& count, RayOrder o
     }
     path.way.add(hit.t);
     this->put(lanes++, hit, direction, path);
-    if (lanes == SurfaceBlock::kLanes)
-    {
-      arriveAtAll();
-    }
   }
   queue.clear();
   for (std::size_t i = 0; i < this->Within.rays.size(); ++i)
@@ -401,11 +408,8 @@ void TileTracer::follow(PathQueue& queue, Kind kind, RayCount& count, RayOrder o
     const Path& path = this->Within.paths[i];
     const Hit& hit = this->Sets[static_cast<std::size_t>(path.set)]
                                [static_cast<std::size_t>(path.member)];
+    waitFor(path);
     this->put(lanes++, hit, this->Within.rays[i].direction, path);
-    if (lanes == SurfaceBlock::kLanes)
-    {
-      arriveAtAll();
-    }
   }
   arriveAtAll();
   this->Within.clear();
@@ -417,7 +421,7 @@ void TileTracer::put(
 {
   this->Block.set(lane, hit.triangle);
   this->Block.setHit(lane, hit);
-  this->Block.setRay(lane, direction);
+  this->Block.setDirection(lane, direction);
   this->Arriving[lane] = path;
 }
 
@@ -488,12 +492,15 @@ void TileTracer::arrive(unsigned int bits, const Path* paths, Kind kind)
       continue;
     }
     this->noteArrival(path, part, this->Block.partIndex(lane), this->Block.isFront(lane), kind);
-    this->Targets[lane].emplace(this->targetOf(path, mirror ? material.reflectance : 0.0f, 1.0f));
+    this->Targets[lane].emplace(
+      this->targetOf(path, mirror ? material.reflectance : 0.0f, opacity));
     targets[lane] = &*this->Targets[lane];
     together |= 1u << lane;
     if (mirror)
     {
-      this->startMirror(this->Block.point(lane), this->Block.ray(lane).direction, path);
+      Path opaque = path;
+      opaque.weight *= opacity;
+      this->startMirror(this->Block.point(lane), this->Block.ray(lane).direction, opaque);
     }
   }
   if (together != 0)
@@ -544,7 +551,7 @@ Lighting::Target TileTracer::highlightOf(const Path& path)
     path.bounces };
 }
 
-// The same of one surface.
+// Of one surface.
 void TileTracer::arrive(const SurfacePoint& point, const glm::dvec3& direction,
   const glm::dvec3& toViewer, const Path& path, Kind kind)
 {

@@ -220,7 +220,7 @@ TEST_P(InLanes, SurfacesAreThoseOfOnePoint)
         queries[lane] = randomQuery(s, random);
         block.set(lane, queries[lane].triangle);
         block.setHit(lane, queries[lane].hit);
-        block.setRay(lane, queries[lane].direction);
+        block.setDirection(lane, queries[lane].direction);
       }
       const auto all = (1u << count) - 1u;
       const auto bits = static_cast<unsigned int>(1 + random.below(all));
@@ -272,7 +272,7 @@ TEST_P(InLanes, RaysMeetTrianglesWhereOneRayDoes)
           ray.direction[int(random.below(3))] = random.below(2) == 0 ? 1.0 : -1.0;
         }
         block.set(lane, q.triangle);
-        block.setRay(lane, ray.direction);
+        block.setDirection(lane, ray.direction);
         SurfaceBlock::setVector(block.lanes().origin, lane, ray.origin);
         meetPlane |= surfaces.primaryHit(q.triangle, ray, planes[lane]) ? 1u << lane : 0u;
         meetExactly |= surfaces.exactHit(
@@ -470,7 +470,7 @@ TEST_P(InLanes, LightIsThatOfOnePoint)
         q.direction = glm::normalize(q.direction);
         block.set(lane, q.triangle);
         block.setHit(lane, q.hit);
-        block.setRay(lane, q.direction);
+        block.setDirection(lane, q.direction);
       }
       const auto bits = static_cast<unsigned int>(1 + random.below(255));
       block.evaluate(kLanes, bits, nullptr);
