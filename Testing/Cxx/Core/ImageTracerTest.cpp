@@ -140,6 +140,46 @@ TEST(ImageTracer, IsTheSameForAnyBandsAndThreads)
   }
 }
 
+// With many paths, ambient light and three lights behind shadow rays: whichever pixels are traced with it.
+TEST(ImageTracer, APixelAloneIsThatOfThePicture)
+{
+  const int width = 96, height = 64;
+  Balls balls(width, height);
+  for (const glm::dvec3 position : { glm::dvec3(-5, 4, 3), glm::dvec3(0, 7, -2) })
+  {
+    balls.scene.lights.push_back(balls.scene.lights.front());
+    balls.scene.lights.back().position = position;
+    balls.scene.lights.back().color = { 0.3f, 0.7f, 0.1f };
+  }
+  balls.scene.parts[1].material.front.specular = 0.4f;
+  balls.scene.parts[1].material.back = balls.scene.parts[1].material.front;
+  balls.scene.parts[2].material.front.ambient = 0.37f;
+  balls.scene.parts[2].material.front.ambientColor = { 0.9f, 0.3f, 0.6f };
+  balls.scene.parts[2].material.reflectance = 0.3f;
+  // Glass within glass: ways of equal length through the one and the other.
+  for (const double size : { 0.8, 0.6 })
+  {
+    const glm::dmat4 place = balls.scene.parts[1].localToWorld;
+    scenes::addPart(balls.scene, scenes::sphere(24, 16),
+      glm::scale(place, glm::dvec3(size))).material = balls.scene.parts[1].material;
+  }
+  balls.structure.update(balls.scene);
+  castPrimaryRays(balls.scene, balls.structure, {}, balls.hits);
+  TracerSettings settings;
+  settings.maximumDepth = 6;
+  SecondaryImage whole;
+  balls.trace(settings, Wanted::Everything, whole, 20);
+  // Alone a pixel's paths stand side by side in the lanes, in the picture far from each other.
+  for (int pixel = 0; pixel < width * height; pixel += 7)
+  {
+    const int x = pixel % width, y = pixel / width;
+    settings.bounds = { x, x + 1, y, y + 1 };
+    SecondaryImage alone;
+    balls.trace(settings, Wanted::Everything, alone, 20);
+    ASSERT_EQ(alone.pixels[pixel], whole.pixels[pixel]) << x << ", " << y;
+  }
+}
+
 // Tiles that cut those of the tracer at will: put together they are the picture and its rays, and no
 // tile writes a pixel of another.
 TEST(ImageTracer, TracesWhatLiesWithinTheBounds)
