@@ -53,9 +53,8 @@
 namespace hrt
 {
 
-// Of a coordinate of a mesh, and of what is computed in double, relative to their sizes: see above.
+// Of a coordinate of a mesh, relative to its size: see above. Of what is computed: kComputedRounding.
 inline constexpr double kCoordinateRounding = 0x1p-23;
-inline constexpr double kComputedRounding = 0x1p-43;
 
 // Surfaces that are met at a smaller angle than one of this sine, less than a degree, may be kept apart
 // though they are in one place: along the ray their hits are as much farther apart. What is seen so is

@@ -29,6 +29,7 @@
 // sign is one of those that zero stood for.
 #pragma once
 
+#include "Rendering/Core/Geometry/Rounding.h"
 #include "Rendering/Core/Snapshot.h"
 
 #include <glm/glm.hpp>
@@ -65,10 +66,6 @@ Corners sceneCorners(const glm::vec3* positions, const glm::dmat4& positionsToSc
 
 // a b - c d without cancellation (Kahan), off by at most 2 u of itself.
 double differenceOfProducts(double a, double b, double c, double d);
-
-// Edge functions are taken without cancellation where their sum is less than this share of the
-// magnitudes of the products that they are made of: d < M / 4 of the paragraph above.
-inline constexpr double kCancelled = 0.25;
 
 // A ray with the shear that makes it the z axis, to be tested against many triangles.
 class ShearedRay

@@ -1,5 +1,6 @@
 // Implements SurfaceKernels.h for the instruction set that the including file is compiled for, which names
 // HRT_LANES_NAMESPACE and HRT_KERNEL_TABLE.
+#include "Rendering/Core/Geometry/Rounding.h"
 #include "Rendering/Core/Math/Lanes.h"
 #include "Rendering/Core/Math/Power.h"
 #include "Rendering/Core/Surface/SurfaceKernels.h"
@@ -13,11 +14,6 @@ namespace HRT_LANES_NAMESPACE
 
 static_assert(kLanes == kSurfaceLanes, "a block is one value");
 
-// kCancelled of Geometry/TriangleIntersection.h, kComputedRounding of Geometry/Coincidence.h and
-// kSurelyInside of Tracing/Surface.cpp, which are no headers for here; the tests would see another value.
-constexpr double kCancelledShare = 0.25;
-constexpr double kComputed = 0x1p-43;
-constexpr double kSurelyInsideShare = 0x1p-20;
 constexpr double kInfinity = __builtin_inf();
 
 // The shared source in lanes.
@@ -233,7 +229,7 @@ unsigned int meet(SurfaceLanes& lanes)
   Doubles ofA = a0 - a1, ofB = b0 - b1, ofC = c0 - c1;
   const Mask maybe = agree(ofA, ofB, ofC);
   const Doubles products = abs(a0) + abs(a1) + abs(b0) + abs(b1) + abs(c0) + abs(c1);
-  const Mask kept = abs(ofA + ofB + ofC) >= Doubles(kCancelledShare) * products;
+  const Mask kept = abs(ofA + ofB + ofC) >= Doubles(kCancelled) * products;
   if (any(!kept))
   {
     ofA = select(kept, ofA, differenceOfProducts(cx, by, cy, bx));
@@ -283,8 +279,8 @@ void surface(SurfaceLanes& lanes)
   const Doubles x = most(corners.a.x, corners.b.x, corners.c.x),
                 y = most(corners.a.y, corners.b.y, corners.c.y),
                 z = most(corners.a.z, corners.b.z, corners.c.z);
-  (Doubles(kComputed) * max(max(x, y), z)).store(lanes.positionError);
-  lanes.border = bitsOf(!(min(min(u, v), one - u - v) > Doubles(kSurelyInsideShare)));
+  (Doubles(kComputedRounding) * max(max(x, y), z)).store(lanes.positionError);
+  lanes.border = bitsOf(!(min(min(u, v), one - u - v) > Doubles(kSurelyInside)));
 
   const doubles::HrtSides sides =
     doubles::hrtSides(corners.a, corners.b, corners.c, vec3::load(lanes.direction));

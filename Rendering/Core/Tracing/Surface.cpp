@@ -22,10 +22,6 @@ namespace
 // that of the triangle's inside, also where the two meet at an angle of only 10 degrees.
 constexpr double kInside = 8.0;
 
-// Barycentric coordinates above this are that far inside, unless the triangle is a million times less
-// high than the scene is large: for most points nothing more is computed.
-constexpr double kSurelyInside = 0x1p-20;
-
 double largestCoordinate(const Corners& corners)
 {
   const glm::dvec3 most =
