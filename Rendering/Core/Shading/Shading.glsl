@@ -40,12 +40,6 @@ struct HrtSurface
   real power;
 };
 
-// Barycentric interpolation: u belongs to the second corner, v to the third, as in Moeller-Trumbore.
-HRT_FUNCTION vec3 hrtInterpolate3(vec3 a, vec3 b, vec3 c, real u, real v)
-{
-  return a * (real(1.0) - u - v) + b * u + c * v;
-}
-
 // (t, u, v) where the ray meets the triangle's plane; no test whether it is inside. The ray is
 // parallel to the plane when the determinant is 0; then t is not finite.
 HRT_FUNCTION vec3 hrtIntersectPlane(vec3 origin, vec3 direction, vec3 a, vec3 b, vec3 c)
@@ -57,16 +51,6 @@ HRT_FUNCTION vec3 hrtIntersectPlane(vec3 origin, vec3 direction, vec3 a, vec3 b,
   vec3 s = origin - a;
   vec3 q = cross(s, e1);
   return vec3(dot(e2, q) * scale, dot(s, p) * scale, dot(direction, q) * scale);
-}
-
-// Moves barycentrics that fall outside the triangle (the rasteriser snaps vertices to a sub-pixel
-// grid, so a pixel's centre may lie a hair outside the triangle it was given to) onto its border.
-HRT_FUNCTION vec2 hrtClampBarycentrics(real u, real v)
-{
-  real cu = clamp(u, real(0.0), real(1.0));
-  real cv = clamp(v, real(0.0), real(1.0));
-  real excess = max(cu + cv - real(1.0), real(0.0));
-  return vec2(max(cu - real(0.5) * excess, real(0.0)), max(cv - real(0.5) * excess, real(0.0)));
 }
 
 // Whether light that travels `toward` a point is in the light's cone; all is where it has none.

@@ -1,6 +1,9 @@
 // Implements the device.
 #include "Rendering/Core/Structures/EmbreeDevice.h"
 
+#include "Rendering/Core/Surface/SurfaceKernels.h"
+
+#include <algorithm>
 #include <stdexcept>
 
 namespace hrt
@@ -30,25 +33,16 @@ std::string describe(RTCError error)
   }
 }
 
-// Embree answers "8 rays natively" from AVX on, 16 from AVX-512 on; what exactly we need of them is
-// asked of the processor.
+// Embree answers "8 rays natively" from AVX on, 16 from AVX-512 on, as it is configured; what the processor has
+// is asked elsewhere.
 InstructionSet setOf(RTCDevice device)
 {
-#if defined(__GNUC__) && defined(__x86_64__)
-  if (rtcGetDeviceProperty(device, RTC_DEVICE_PROPERTY_NATIVE_RAY8_SUPPORTED) == 0 ||
-    !__builtin_cpu_supports("avx2") || !__builtin_cpu_supports("fma"))
-  {
-    return InstructionSet::Base;
-  }
-  return rtcGetDeviceProperty(device, RTC_DEVICE_PROPERTY_NATIVE_RAY16_SUPPORTED) != 0 &&
-      __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512vl") &&
-      __builtin_cpu_supports("avx512dq")
-    ? InstructionSet::Avx512
-    : InstructionSet::Avx2;
-#else
-  (void)device;
-  return InstructionSet::Base;
-#endif
+  const auto has = [device](RTCDeviceProperty property)
+  { return rtcGetDeviceProperty(device, property) != 0; };
+  const InstructionSet most = has(RTC_DEVICE_PROPERTY_NATIVE_RAY16_SUPPORTED) ? InstructionSet::Avx512
+    : has(RTC_DEVICE_PROPERTY_NATIVE_RAY8_SUPPORTED)                          ? InstructionSet::Avx2
+                                                                              : InstructionSet::Base;
+  return std::min(most, bestInstructionSet());
 }
 
 } // namespace

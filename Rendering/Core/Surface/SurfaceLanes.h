@@ -26,15 +26,6 @@ namespace singles
 {
 using real = Floats;
 using vec3 = VectorLanes<Floats>;
-struct vec2
-{
-  Floats x, y;
-  HRT_INLINE vec2(const Floats& a, const Floats& b)
-    : x(a)
-    , y(b)
-  {
-  }
-};
 HRT_INLINE Floats pow(const Floats& x, const Floats& y)
 {
   return toFloats(powerOf(toDoubles(x), toDoubles(y)));
@@ -43,10 +34,6 @@ HRT_INLINE Floats pow(const Floats& x, const Floats& y)
 #include "Rendering/Core/Shading/Shading.glsl"
 #undef HRT_BOOL
 }
-#undef HRT_LIGHT_DIRECTIONAL
-#undef HRT_LIGHT_POSITIONAL
-#undef HRT_LIGHT_SINGLE_HEADLIGHT
-#undef HRT_POW_FLOOR
 namespace doubles
 {
 using real = Doubles;
@@ -60,12 +47,7 @@ struct vec2
   {
   }
 };
-HRT_INLINE Doubles pow(const Doubles& x, const Doubles& y)
-{
-  return powerOf(x, y);
-}
 #define HRT_BOOL Doubles::Mask
-#include "Rendering/Core/Shading/Shading.glsl"
 #include "Rendering/Core/Surface/Sides.glsl"
 #undef HRT_BOOL
 }
